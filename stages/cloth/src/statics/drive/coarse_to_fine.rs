@@ -1,7 +1,7 @@
 //! One try of the static solver, from the coarsest mesh level to the finest.
 //!
-//! Method: the coarsest level is sewn, then the levels are relaxed from coarse to fine (see `sew` and
-//! `drape`). Here are the state of the try, the run of one level and the result. Cost: that of
+//! Method: the coarsest level is sewn, then the levels are relaxed from coarse to fine (see `sew`
+//! and `drape`). Here are the state of the try, the run of one level and the result. Cost: that of
 //! Newton's method on each level (see `newton/to_rest`). Limits: a level that is too coarse for the
 //! body or its seams is reported, and the caller tries again on a finer one (see `solve`).
 
@@ -32,9 +32,9 @@ const CLEARANCE_ROUNDS: usize = 8;
 /// First step of pseudo-time in such a round, in which the cloth hardly moves, s.
 const CLEARANCE_STEP: f64 = 0.2;
 
-/// Greatest number of points of a mesh on which the garment is sewn anew because it still intersects
-/// itself on a coarser one. Sewing a larger mesh takes long, and the rest may be resolved while the
-/// garment drapes.
+/// Greatest number of points of a mesh on which the garment is sewn anew because it still
+/// intersects itself on a coarser one. Sewing a larger mesh takes long, and the rest may be
+/// resolved while the garment drapes.
 const MOST_CROSSED: usize = 4000;
 
 /// The result of a try.

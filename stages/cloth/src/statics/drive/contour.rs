@@ -2,9 +2,9 @@
 //!
 //! Method: Volino, Magnenat-Thalmann 2006. Where an edge passes through a triangle, the contour
 //! continues into the triangles beside the edge. Edge and triangle move against each other in the
-//! direction in which the contour becomes shorter the fastest. A contour that ends at a hem is moved
-//! out over it; a closed one shrinks to nothing. Between these moves stretched edges are shortened
-//! to their rest lengths. The method need not know which side of the cloth is which.
+//! direction in which the contour becomes shorter the fastest. A contour that ends at a hem is
+//! moved out over it; a closed one shrinks to nothing. Between these moves stretched edges are
+//! shortened to their rest lengths. The method need not know which side of the cloth is which.
 //!
 //! Cost: one search for crossings a sweep. Limits: contours whose length does not depend on the
 //! direction of motion may stay, as where one tube passes straight through another, or where a hem
@@ -50,8 +50,8 @@ const SHORTENING_ROUNDS: usize = 4;
 /// Share of its excess length by which an edge is shortened in a round.
 const SHORTENING: f64 = 0.3;
 
-/// Moves nodes until no crossings are left or their number falls no more. `x` becomes the state with
-/// the fewest crossings; returns how many these are.
+/// Moves nodes until no crossings are left or their number falls no more. `x` becomes the state
+/// with the fewest crossings; returns how many these are.
 pub(crate) fn uncross(sheet: &Sheet, tree: &ClothTree, pinned: &[bool], x: &mut [Vec3]) -> usize {
     if tree.crossings(x).is_empty() {
         return 0;
@@ -102,8 +102,8 @@ fn beside(e: &Edge) -> ([u32; 2], Beside) {
 
 /// A crossing: an edge that passes through a triangle.
 struct Meeting {
-    /// The direction in which the edge moves against the triangle to shorten the contour. Its length
-    /// is the change of the contour length per move.
+    /// The direction in which the edge moves against the triangle to shorten the contour. Its
+    /// length is the change of the contour length per move.
     gradient: Vec3,
     /// Where the crossing lies along the edge, 0 to 1.
     along: f64,

@@ -1,15 +1,15 @@
 //! Draping: the sewn garment is brought to equilibrium, level by level.
 //!
 //! Method: each level starts from the state of the coarser one, prolonged to its vertices. With
-//! bending continuation (see `levels/bending_continuation`), each level also lowers the stiffness of
-//! bending. While a level is solved, another thread prepares the next finer one. Only the finest
+//! bending continuation (see `levels/bending_continuation`), each level also lowers the stiffness
+//! of bending. While a level is solved, another thread prepares the next finer one. Only the finest
 //! level must prove that it is at rest. Cost and limits: see `solve`.
 
 use crate::statics::drive::coarse_to_fine::{Draped, Solve};
 use crate::statics::drive::held::hold_as;
 use crate::statics::levels::bending_continuation::stages;
 use crate::statics::levels::mesh_level::Level;
-use crate::statics::newton::to_rest::NewtonOptions;
+use crate::statics::newton::to_rest::{NewtonOptions, Proof};
 use crate::statics::report::equilibrium::Progress;
 use crate::statics::report::error::StaticsError;
 use crate::statics::report::intersecting::entangled;
@@ -37,8 +37,8 @@ const FARTHEST: f64 = 0.1;
 /// First step of pseudo-time on the finest level, s: the state of a coarser level has little speed.
 const FIRST_ON_FINEST: f64 = 0.15;
 
-/// Newton steps in which cloth that a coarser level left on both sides of a sharp edge must come out
-/// over it.
+/// Newton steps in which cloth that a coarser level left on both sides of a sharp edge must come
+/// out over it.
 const FREEING: usize = 20;
 
 /// Longest step of pseudo-time of bending continuation, s: cloth without friction slides slowly.
@@ -245,16 +245,18 @@ impl<'a> Solve<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
         let (steps, speed) = (self.plan.settings.finest_steps, self.plan.settings.speed);
+        let proof = Proof::of(self.plan.settings.long_proof);
         let one_by_one = self.starts_one_by_one(0);
         let options =
-            NewtonOptions { first: FIRST_ON_FINEST, steps, speed, prove: true, one_by_one, ..self.options() };
+            NewtonOptions { first: FIRST_ON_FINEST, steps, speed, proof, one_by_one, ..self.options() };
         let Level { system, sheet, layout, x, .. } = level;
         let report = self.relax_uncrossed(0, system, sheet, layout, x, &options, progress)?;
         self.reports.push(report);
         self.restore_clearance(system, sheet, layout, x, &options, progress)
     }
 
-    /// Whether the cloths of a stack start one by one on level `k`. Finer levels start from the stack.
+    /// Whether the cloths of a stack start one by one on level `k`. Finer levels start from the
+    /// stack.
     fn starts_one_by_one(&self, k: usize) -> bool {
         self.plan.is_stack && k == self.plan.coarsest_level()
     }
@@ -269,8 +271,7 @@ impl<'a> Solve<'a> {
             speed,
             non_static: self.plan.settings.non_static,
             farthest: FARTHEST,
-            prove: false,
-            long_proof: self.plan.settings.long_proof,
+            proof: Proof::AnyStep,
             skip_line_search: false,
             holds_stopped: self.plan.settings.sew_through,
             one_by_one: false,

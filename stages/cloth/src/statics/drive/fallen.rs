@@ -21,8 +21,8 @@ pub(crate) fn list_of(scene: &Scene, is_fallen: &[bool]) -> String {
 }
 
 impl Solve<'_> {
-    /// The error of cloth that has fallen past the body, if any node of level `k` at `x` has. `piece`
-    /// is the piece of each node.
+    /// The error of cloth that has fallen past the body, if any node of level `k` at `x` has.
+    /// `piece` is the piece of each node.
     pub(crate) fn fallen(
         &self,
         k: usize,

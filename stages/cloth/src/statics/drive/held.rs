@@ -1,4 +1,5 @@
-//! Goes on from the friction of an equilibrium: displacements, offsets, folds and contacts. Cost: O(n).
+//! Goes on from the friction of an equilibrium: displacements, offsets, folds and contacts. Cost:
+//! O(n).
 
 use crate::contact::friction::FrictionContact;
 use crate::scene::Held;

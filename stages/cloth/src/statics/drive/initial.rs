@@ -1,15 +1,15 @@
 //! The first equilibrium of bending continuation: stiff, on the coarsest level, with or without
 //! friction.
 //!
-//! Friction would keep a garment wherever its seams happened to close, so the garment is first solved
-//! without friction. If that equilibrium is the same as with friction, the continuation goes on
-//! without friction; otherwise friction holds the garment from there on. A garment that slides off
-//! or turns away without friction (a plate on a ball, a skirt on a round body) has friction from its
-//! sewing on.
+//! Friction would keep a garment wherever its seams happened to close, so the garment is first
+//! solved without friction. If that equilibrium is the same as with friction, the continuation goes
+//! on without friction; otherwise friction holds the garment from there on. A garment that slides
+//! off or turns away without friction (a plate on a ball, a skirt on a round body) has friction
+//! from its sewing on.
 //!
-//! The equilibria of a garment that is its own mirror image come in pairs, and rounding would choose
-//! between the two. So the garment is turned back to its initial orientation and solved under a
-//! small torque first, as structures that may buckle either way are computed with a small
+//! The equilibria of a garment that is its own mirror image come in pairs, and rounding would
+//! choose between the two. So the garment is turned back to its initial orientation and solved
+//! under a small torque first, as structures that may buckle either way are computed with a small
 //! imperfection (Koiter 1945, "On the stability of elastic equilibrium"); then without the torque.
 //!
 //! Cost: up to three runs of [`FIRST_STEPS`] Newton steps a try, on the coarsest level.
@@ -25,8 +25,8 @@ use crate::statics::report::error::StaticsError;
 /// Newton steps of a run: a skirt without friction may turn about its body for ever.
 const FIRST_STEPS: usize = 40;
 
-/// Stiffnesses that are tried, the greatest first. A garment that slides off with each of them, with
-/// friction and without, is assumed to slide off when it is softer, too.
+/// Stiffnesses that are tried, the greatest first. A garment that slides off with each of them,
+/// with friction and without, is assumed to slide off when it is softer, too.
 const TRIES: usize = 2;
 
 /// Greatest mean distance of the equilibria with and without friction, as a share of the garment's
@@ -36,8 +36,8 @@ const MOST_SLIP: f64 = 0.03;
 /// Greatest angle by which the garment may turn without friction, rad.
 const MOST_TURN: f64 = 0.175;
 
-/// The force of the torque, as a share of the weight: enough to choose one of two mirror images from
-/// initial positions that differ by 1 mm, too little to turn a skirt to its next equilibrium.
+/// The force of the torque, as a share of the weight: enough to choose one of two mirror images
+/// from initial positions that differ by 1 mm, too little to turn a skirt to its next equilibrium.
 const TORQUE: f64 = 0.08;
 
 impl<'a> Solve<'a> {

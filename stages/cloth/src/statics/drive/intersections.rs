@@ -27,8 +27,8 @@ const SWEEPS: usize = 30;
 const PATIENCE: Patience = Patience { steps: 25, share: 0.0 };
 
 impl Solve<'_> {
-    /// Relaxes level `k`. Where cloth that was sewn through itself still intersects itself, smooths it
-    /// and relaxes it again.
+    /// Relaxes level `k`. Where cloth that was sewn through itself still intersects itself, smooths
+    /// it and relaxes it again.
     pub(crate) fn relax_uncrossed(
         &self,
         k: usize,

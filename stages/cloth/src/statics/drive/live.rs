@@ -4,8 +4,8 @@
 //! the order of elimination. After a small change one or two Newton steps suffice. When the changes
 //! stop, [`Live::settle`] goes on until rest is proved.
 //!
-//! Cost of a step: one factorization, and O(n) for the rest. Limits: mesh and seams must stay. Since
-//! friction and folds have a history, the equilibrium may differ from that of a fresh start.
+//! Cost of a step: one factorization, and O(n) for the rest. Limits: mesh and seams must stay.
+//! Since friction and folds have a history, the equilibrium may differ from that of a fresh start.
 
 use crate::mesh::Sheet;
 use crate::scene::Scene;
@@ -16,7 +16,7 @@ use crate::statics::forces::clearance::clearance;
 use crate::statics::forces::system::System;
 use crate::statics::levels::assemble::{Collider, assemble, cloths, kept_seam_forces};
 use crate::statics::levels::pieces::Pieces;
-use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, Outcome, greatest};
+use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, Outcome, Proof, greatest};
 use crate::statics::report::unbalanced::unbalanced;
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -157,8 +157,9 @@ impl<'a> Live<'a> {
         Ok(())
     }
 
-    /// Makes up to `steps` Newton steps towards rest; none if the garment is at rest. The last step is
-    /// short: it removes the strain that long steps leave. The residual is that of the final state.
+    /// Makes up to `steps` Newton steps towards rest; none if the garment is at rest. The last step
+    /// is short: it removes the strain that long steps leave. The residual is that of the final
+    /// state.
     ///
     /// # Errors
     /// [`StaticsError::NotPositive`], where no inertia makes the matrix positive definite.
@@ -187,11 +188,10 @@ impl<'a> Live<'a> {
             speed,
             non_static: self.settings.non_static,
             farthest: FARTHEST,
-            prove: true,
+            proof: Proof::of(self.settings.long_proof),
             skip_line_search: false,
             holds_stopped: false,
             one_by_one: false,
-            long_proof: self.settings.long_proof,
             asleep: self.settings.asleep,
             precision: self.settings.precision,
         }

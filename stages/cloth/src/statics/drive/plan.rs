@@ -1,7 +1,7 @@
 //! The plan of one try: the mesh levels of a scene, from the cut pieces to the coarsest mesh.
 //!
-//! Method: each level is coarsened from the finer one (see `levels/coarsen`) until it has few enough
-//! points; levels whose cloth intersects itself at the start are dropped. Cost: O(n log n).
+//! Method: each level is coarsened from the finer one (see `levels/coarsen`) until it has few
+//! enough points; levels whose cloth intersects itself at the start are dropped. Cost: O(n log n).
 
 use crate::contact::collision_surface::CollisionSurface;
 use crate::contact::past::BodyBox;

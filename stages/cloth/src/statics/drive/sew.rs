@@ -1,10 +1,10 @@
 //! Sewing: the seams are closed on the coarsest level.
 //!
 //! Method: closing forces that hardly depend on the gap pull the two sides of each seam together,
-//! without weight and friction, and grow by rounds until the seams are closed (see
-//! [`SeamForce`]). Then each pair becomes one node. Where the scene is sewn on other solids first,
-//! each of them pushes the sewn cloth out. Cloth without seams is only flattened. Cost: some 40 Newton
-//! steps a round. Limits: where the body keeps seams open, they are reported as open.
+//! without weight and friction, and grow by rounds until the seams are closed (see [`SeamForce`]).
+//! Then each pair becomes one node. Where the scene is sewn on other solids first, each of them
+//! pushes the sewn cloth out. Cloth without seams is only flattened. Cost: some 40 Newton steps a
+//! round. Limits: where the body keeps seams open, they are reported as open.
 
 use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
@@ -69,8 +69,8 @@ const SLIDING_STEPS: usize = 60;
 const LONGEST_SLIDE: f64 = 0.5;
 
 /// Stiffness of the height springs of a square metre of panel, as a share of the closing force of a
-/// metre of seam in the first round, 1/m^2. Found by trial: if it grew with the closing force, waist
-/// seams of panels placed apart would stay open.
+/// metre of seam in the first round, 1/m^2. Found by trial: if it grew with the closing force,
+/// waist seams of panels placed apart would stay open.
 const HEIGHT_STIFFNESS: f64 = 40.0;
 
 /// Share of that stiffness while a solid pushes sewn cloth out of itself: the cloth must rise with
@@ -187,8 +187,8 @@ impl Solve<'_> {
         pairs.iter().map(|nodes| SeamForce { nodes: *nodes, force, softening }).collect()
     }
 
-    /// Increases the closing force by rounds until the seams are closed; returns the force per metre
-    /// that it took.
+    /// Increases the closing force by rounds until the seams are closed; returns the force per
+    /// metre that it took.
     fn close_in_rounds(
         &mut self,
         sheet: &Sheet,
@@ -379,8 +379,8 @@ impl Solve<'_> {
     }
 }
 
-/// Whether a gap that a round has changed from `before` to `after` will stay open in the last round,
-/// after so many rounds.
+/// Whether a gap that a round has changed from `before` to `after` will stay open in the last
+/// round, after so many rounds.
 fn is_hopeless(before: f64, after: f64, rounds: usize) -> bool {
     // The gap of a sheet that stretches shrinks in proportion to the force.
     let last = GROWTH.powi(ROUNDS.saturating_sub(rounds) as i32);

@@ -1,13 +1,15 @@
 //! The static solver: brings a whole scene to static equilibrium.
 //!
-//! Method: the panels are coarsened to a multilevel mesh. On the coarsest level the seams are closed
-//! (by a force that hardly depends on the gap, without weight; then each pair becomes one node, so
-//! that the gap is exactly zero) and the garment is draped. Each finer level starts from the state of
-//! the coarser one, interpolated in the triangles in which its vertices lie. So falling and sewing
-//! happen where a step costs milliseconds, and the finest level needs only small moves.
+//! Method: the panels are coarsened to a multilevel mesh. On the coarsest level the seams are
+//! closed (by a force that hardly depends on the gap, without weight; then each pair becomes one
+//! node, so that the gap is exactly zero) and the garment is draped. Each finer level starts from
+//! the state of the coarser one, interpolated in the triangles in which its vertices lie. So
+//! falling and sewing happen where a step costs milliseconds, and the finest level needs only small
+//! moves.
 //!
-//! Where the coarsest level is too coarse (a seam stays open, cloth intersects itself, a limb passes
-//! through a triangle: see `penetration`), the garment is sewn again on the next finer level.
+//! Where the coarsest level is too coarse (a seam stays open, cloth intersects itself, a limb
+//! passes through a triangle: see `penetration`), the garment is sewn again on the next finer
+//! level.
 //!
 //! Where the body would keep seams open, the coarsest level may be sewn on other solids (see
 //! [`StaticEquilibrium::solve_around`]).
@@ -129,8 +131,8 @@ impl StaticEquilibrium {
                 }
                 // A sheet of a few vertices may fall past a body that would hold a finer one.
                 (Err(StaticsError::FallsPast(fallen)), Some(finer)) if !fallen.is_certain => finer,
-                // A coarse mesh may not go around a limb, may be folded onto itself by its seams, or
-                // may have folds too close for a finer mesh to separate.
+                // A coarse mesh may not go around a limb, may be folded onto itself by its seams,
+                // or may have folds too close for a finer mesh to separate.
                 (Err(e), Some(finer)) if e.is_of_a_coarse_mesh(plan.edge()) => finer,
                 (Err(e), _) => return Err(e),
             };

@@ -3,7 +3,7 @@
 //! Method: the nodes have places (those of the panels before sewing, where they are flat) and are
 //! bisected recursively (George 1973). The nodes of one half that are coupled to the other half are
 //! the separator and come last. Of the cuts across each axis, the one with the smallest separator
-//! is chosen (see [`bisection`]). Cost: O(n log n). Limit: the order is only as good as the layout,
+//! is chosen (see `bisection`). Cost: O(n log n). Limit: the order is only as good as the layout,
 //! but valid for any.
 
 mod bisection;

@@ -45,8 +45,8 @@ pub struct BodyContact<'a> {
     /// Edges of the sheet and their rest lengths: an edge between two nodes on a curved body dips
     /// below them.
     pub edges: Vec<([u32; 2], f64)>,
-    /// Whether edges must stay outside the body, too; otherwise they may dip into it as far as keeps
-    /// the girth right.
+    /// Whether edges must stay outside the body, too; otherwise they may dip into it as far as
+    /// keeps the girth right.
     pub keeps_edges_out: bool,
     /// Whether the offset of overloaded nodes grows until contact carries them.
     pub grows_offsets: bool,
@@ -84,8 +84,8 @@ impl BodyContact<'_> {
     }
 
     /// Increases the offset of node `i` if it is overloaded. A stiff sheet presses harder on a few
-    /// nodes than their contact can carry. Without this the guard would stop them at every step, and
-    /// nothing would come to rest.
+    /// nodes than their contact can carry. Without this the guard would stop them at every step,
+    /// and nothing would come to rest.
     pub(crate) fn grow(&mut self, i: usize, distance: f64) {
         if distance < OVERLOADED * self.offset {
             self.offsets[i] += GUARD * self.offset;
@@ -99,8 +99,8 @@ impl BodyContact<'_> {
         }
     }
 
-    /// Makes contact stiffer at overloaded nodes. Their share of the sheet is too small for the load
-    /// there; if the guard alone held them they would never come to rest.
+    /// Makes contact stiffer at overloaded nodes. Their share of the sheet is too small for the
+    /// load there; if the guard alone held them they would never come to rest.
     pub(crate) fn stiffen_overloaded(&mut self) {
         self.overloaded.sort_unstable();
         self.overloaded.dedup();

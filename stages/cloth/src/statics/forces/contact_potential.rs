@@ -3,8 +3,8 @@
 //! Down to half of the thickness `t` the energy is `k/2 (t - d)^2` of the distance `d`. Below, it
 //! continues as a logarithm with the same slope and curvature (the two-stage potential of offset
 //! geometric contact, Chen et al. 2025). A spring alone carries no more than `k t`: under a greater
-//! load the distance of two layers would vanish, only collision detection would hold them apart, and
-//! nothing could move any more. Cost: O(1).
+//! load the distance of two layers would vanish, only collision detection would hold them apart,
+//! and nothing could move any more. Cost: O(1).
 
 /// Share of the thickness below which the barrier is continued by a parabola: layers that start in
 /// one place have no distance.

@@ -1,10 +1,10 @@
 //! Friction of cloth on cloth: what each contact keeps from step to step.
 //!
-//! Friction acts on the vector between the two features of a contact (see [`Contact`]); its anchor
+//! Friction acts on the vector between the two features of a contact (see `Contact`); its anchor
 //! is that vector at the first touch. Features change as cloth slides, and a vertex above a corner
-//! or a side of its partner changes triangles with every rounding. So the tangential displacement is
-//! kept, not the place: a contact goes on from its displacement in the last step, and a new contact
-//! takes over the mean displacement of contacts that share a node with it on either side.
+//! or a side of its partner changes triangles with every rounding. So the tangential displacement
+//! is kept, not the place: a contact goes on from its displacement in the last step, and a new
+//! contact takes over the mean displacement of contacts that share a node with it on either side.
 //!
 //! Cost: O(n log n) of the contacts.
 
@@ -31,8 +31,8 @@ impl FrictionContact {
         between(&self.nodes, &self.weights, x)
     }
 
-    /// Moves the anchor along where the features have slid in this step. A contact that holds beside
-    /// sliding cloth goes on holding.
+    /// Moves the anchor along where the features have slid in this step. A contact that holds
+    /// beside sliding cloth goes on holding.
     pub(crate) fn drag_anchors(&mut self, x: &[Vec3]) {
         let (friction, at) = (self.coulomb(), self.at(x));
         if (friction.displacement(&at) - self.slid).norm() > SLIP_TOLERANCE {

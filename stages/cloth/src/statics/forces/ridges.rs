@@ -175,8 +175,8 @@ impl Contact {
 }
 
 impl Ridges {
-    /// The sharp features of the body of `body_contact`, and the sheet that lies on it; `None` where
-    /// the body has none.
+    /// The sharp features of the body of `body_contact`, and the sheet that lies on it; `None`
+    /// where the body has none.
     pub(crate) fn new(body_contact: &BodyContact<'_>, sheet: &Sheet) -> Option<Self> {
         Some(Self {
             sharp: body_contact.body.sharp()?,

@@ -2,9 +2,9 @@
 //!
 //! Method: offset geometric contact (Chen et al. 2025). A vertex is in contact with the points of
 //! the sheet at which its distance is a local minimum, and an edge with an edge where both closest
-//! points lie inside (the feasible pairs), so that nothing is counted twice. Friction is regularised
-//! Coulomb friction (see `friction_history`). Cost: one closest-point query per pair. Limit: pairs
-//! are found by the caller (see `newton/nearby`).
+//! points lie inside (the feasible pairs), so that nothing is counted twice. Friction is
+//! regularised Coulomb friction (see `friction_history`). Cost: one closest-point query per pair.
+//! Limit: pairs are found by the caller (see `newton/nearby`).
 
 use crate::contact::friction::FrictionContact;
 use crate::linear::{Pattern, add_at};
@@ -33,7 +33,7 @@ pub struct SelfContact {
     pub thickness: f64,
     /// Mean length of the edges, m.
     pub edge: f64,
-    /// Whether many cloths lie on each other (see [`stacked`]).
+    /// Whether many cloths lie on each other (see `self_contact/stacked`).
     pub stacked: bool,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
@@ -92,7 +92,8 @@ impl SelfContact {
         self.friction_contacts.clear();
     }
 
-    /// Replaces the friction contacts that are `replaced` by new ones, in the order of the contacts.
+    /// Replaces the friction contacts that are `replaced` by new ones, in the order of the
+    /// contacts.
     pub(crate) fn replace_friction(
         &mut self,
         replaced: impl Fn(&FrictionContact) -> bool,

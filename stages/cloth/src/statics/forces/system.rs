@@ -188,8 +188,8 @@ impl System<'_> {
         self.ridges.iter_mut().for_each(|r| r.seek(x, &vec![Vec3::zeros(); x.len()]));
     }
 
-    /// Changes moves that lead the cloth past a sharp feature of the body: the cloth gives way where
-    /// it can, and otherwise the moves are shortened.
+    /// Changes moves that lead the cloth past a sharp feature of the body: the cloth gives way
+    /// where it can, and otherwise the moves are shortened.
     pub fn clear_of_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
         let Some(r) = &mut self.ridges else { return };
         r.seek(x, moves);
@@ -295,8 +295,8 @@ impl System<'_> {
         self.body_contact.as_ref().is_none_or(|contact| contact.friction.iter().all(|f| *f == 0.0))
     }
 
-    /// Exchanges the friction with the body for `friction`, and disables or enables that of cloth on
-    /// cloth.
+    /// Exchanges the friction with the body for `friction`, and disables or enables that of cloth
+    /// on cloth.
     pub fn swap_friction(&mut self, friction: &mut Vec<f64>) {
         if let Some(contact) = &mut self.body_contact {
             std::mem::swap(&mut contact.friction, friction);

@@ -48,64 +48,14 @@ pub(crate) fn assemble<'a>(
     models: Models,
 ) -> Result<System<'a>, ClothError> {
     let cloths = cloths(scene);
-    let n = sheet.vertex_count();
-    let mut pinned = vec![false; n];
-    let mut panel = vec![0; n];
-    for (v, &p) in pieces.pinned.iter().enumerate() {
-        let node = if open { v } else { pieces.node[v] as usize };
-        pinned[node] |= p;
-        panel[node] = pieces.panel[v] as usize;
-    }
-    let stiffness: Vec<f64> = sheet
-        .masses()
-        .iter()
-        .zip(&panel)
-        .map(|(w, &p)| (w, cloths[p]))
-        .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
-        .collect();
-    let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
-    let thickness = |p: &usize| cloths[*p].thickness;
-    let body_friction = |b: Collider<'_>, p: usize| {
-        let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
-        // There is no friction while seams close.
-        if open { 0.0 } else { own.unwrap_or(b.friction) }
-    };
+    let nodes = Nodes::new(pieces, sheet, open);
+    let stiffness = contact_stiffness(sheet, &nodes, &cloths);
     let body_contact = body.map(|b| BodyContact {
-        body: b.surface,
-        friction: panel.iter().map(|&p| body_friction(b, p)).collect(),
-        offsets: panel.iter().map(thickness).collect(),
-        offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
-        depth: longest.clamp(0.02, 0.1),
-        edges: sheet.distinct_edges().collect(),
         keeps_edges_out: pieces.rest.len() == scene.rest.len(),
-        grows_offsets: false,
-        stiffens_inside: false,
-        lets_through: false,
-        #[cfg(toile_without = "body")]
-        never: b.never,
-        stiffness: stiffness.clone(),
-        overloaded: Vec::new(),
+        ..body_contact(b, scene, sheet, &nodes, &cloths, open, stiffness.clone())
     });
-    let mut corners = vec![0u16; n];
-    sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
-    let thickness = layer_thickness(&cloths, panel.iter().copied(), sheet);
-    let edge = sheet.edges().iter().map(|e| e.rest_length).sum::<f64>() / sheet.edges().len().max(1) as f64;
-    let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
-    let no_friction = cloths.iter().all(|c| c.friction == 0.0);
-    let ordered = scene.panels.iter().any(|p| p.layer > 0);
-    let self_contact = scene.self_collision.then(|| SelfContact {
-        thickness,
-        edge,
-        stiffness,
-        friction: if open || no_friction {
-            vec![]
-        } else {
-            panel.iter().map(|&p| cloths[p].friction).collect()
-        },
-        corners,
-        order: if ordered { panel.iter().map(order).collect() } else { vec![] },
-        ..SelfContact::default()
-    });
+    let self_contact =
+        scene.self_collision.then(|| self_contact(scene, sheet, &nodes, &cloths, open, stiffness));
     let uncut = pieces.uncut().transpose()?;
     let one = [&scene.material];
     let cloth = Cloth {
@@ -117,13 +67,14 @@ pub(crate) fn assemble<'a>(
     };
     let creases = if open { Vec::new() } else { pieces.creases(sheet) };
     let elastic = Elastic::new(models, &cloth, pieces.springs(open), &creases)?;
+    let n = sheet.vertex_count();
     Ok(System {
         elastic,
         masses: sheet.masses().to_vec(),
         gravity: if open { Vec3::zeros() } else { gravity(scene) },
         push: vec![],
         height_springs: None,
-        pinned,
+        pinned: nodes.pinned,
         seam_forces: vec![],
         ridges: body_contact.as_ref().and_then(|c| Ridges::new(c, sheet)),
         body_contact,
@@ -136,6 +87,101 @@ pub(crate) fn assemble<'a>(
         brakes: vec![],
         targets: vec![],
     })
+}
+
+/// The panel of each node, counted from 1 (0 for none), and whether it is pinned.
+struct Nodes {
+    panel: Vec<usize>,
+    pinned: Vec<bool>,
+}
+
+impl Nodes {
+    fn new(pieces: &Pieces, sheet: &Sheet, open: bool) -> Self {
+        let mut pinned = vec![false; sheet.vertex_count()];
+        let mut panel = vec![0; sheet.vertex_count()];
+        for (v, &p) in pieces.pinned.iter().enumerate() {
+            let node = if open { v } else { pieces.node[v] as usize };
+            pinned[node] |= p;
+            panel[node] = pieces.panel[v] as usize;
+        }
+        Self { panel, pinned }
+    }
+}
+
+/// Stiffness of contact at each node, N/m.
+fn contact_stiffness(sheet: &Sheet, nodes: &Nodes, cloths: &[&Fabric]) -> Vec<f64> {
+    sheet
+        .masses()
+        .iter()
+        .zip(&nodes.panel)
+        .map(|(w, &p)| (w, cloths[p]))
+        .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
+        .collect()
+}
+
+/// Contact with the body, without friction while seams are `open`.
+fn body_contact<'a>(
+    body: Collider<'a>,
+    scene: &Scene,
+    sheet: &Sheet,
+    nodes: &Nodes,
+    cloths: &[&Fabric],
+    open: bool,
+    stiffness: Vec<f64>,
+) -> BodyContact<'a> {
+    let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
+    let thickness = |p: &usize| cloths[*p].thickness;
+    let friction = |p: usize| {
+        let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
+        if open { 0.0 } else { own.unwrap_or(body.friction) }
+    };
+    BodyContact {
+        body: body.surface,
+        friction: nodes.panel.iter().map(|&p| friction(p)).collect(),
+        offsets: nodes.panel.iter().map(thickness).collect(),
+        offset: nodes.panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
+        depth: longest.clamp(0.02, 0.1),
+        edges: sheet.distinct_edges().collect(),
+        keeps_edges_out: false,
+        grows_offsets: false,
+        stiffens_inside: false,
+        lets_through: false,
+        #[cfg(toile_without = "body")]
+        never: body.never,
+        stiffness,
+        overloaded: Vec::new(),
+    }
+}
+
+/// Contact of the cloth with itself, without friction while seams are `open`.
+fn self_contact(
+    scene: &Scene,
+    sheet: &Sheet,
+    nodes: &Nodes,
+    cloths: &[&Fabric],
+    open: bool,
+    stiffness: Vec<f64>,
+) -> SelfContact {
+    let mut corners = vec![0u16; sheet.vertex_count()];
+    sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
+    let thickness = layer_thickness(cloths, nodes.panel.iter().copied(), sheet);
+    let edge = sheet.edges().iter().map(|e| e.rest_length).sum::<f64>() / sheet.edges().len().max(1) as f64;
+    let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
+    let no_friction = cloths.iter().all(|c| c.friction == 0.0);
+    let ordered = scene.panels.iter().any(|p| p.layer > 0);
+    SelfContact {
+        thickness,
+        edge,
+        stiffness,
+        friction: if open || no_friction {
+            vec![]
+        } else {
+            nodes.panel.iter().map(|&p| cloths[p].friction).collect()
+        },
+        corners,
+        order: if ordered { nodes.panel.iter().map(order).collect() } else { vec![] },
+        ..SelfContact::default()
+    }
 }
 
 /// Thickness of self-contact on a level whose nodes belong to these panels, counted from 1, m.

@@ -2,12 +2,12 @@
 //! fabric.
 //!
 //! Cloth has many equilibria, and a solver that goes straight to one of them chooses it by chance:
-//! by rounding in the initial positions. A stiff sheet has few equilibria, mostly one. So the garment
-//! is sewn and first brought to equilibrium as if its bending length were half of its size, so near
-//! to rest that the state depends no more on where it began. Stiffness is then lowered by factors
-//! (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending length of
-//! [`EDGES`] edges. Finer folds, whose shape would depend on the mesh of the level, form on a finer
-//! level. The finest level ends with the bending of the fabric.
+//! by rounding in the initial positions. A stiff sheet has few equilibria, mostly one. So the
+//! garment is sewn and first brought to equilibrium as if its bending length were half of its size,
+//! so near to rest that the state depends no more on where it began. Stiffness is then lowered by
+//! factors (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending
+//! length of [`EDGES`] edges. Finer folds, whose shape would depend on the mesh of the level, form
+//! on a finer level. The finest level ends with the bending of the fabric.
 //!
 //! Friction keeps the history of the cloth, too. A garment that stays in place without friction, as
 //! on shoulders, is solved without it, and friction is enabled at the end of each level. A skirt
@@ -20,11 +20,12 @@
 
 use crate::fabric::Fabric;
 
-/// Nodes of the coarsest level, at most about this many. A much coarser polygon has equilibria of its
-/// own on a body.
+/// Nodes of the coarsest level, at most about this many. A much coarser polygon has equilibria of
+/// its own on a body.
 pub(crate) const COARSEST: usize = 700;
 
-/// Bending length of the first equilibrium, as a share of the garment's size (the root of its area).
+/// Bending length of the first equilibrium, as a share of the garment's size (the root of its
+/// area).
 const FIRST_LENGTH: f64 = 0.5;
 
 /// Greatest factor between the stiffness of one run and the next.
@@ -34,8 +35,8 @@ const STRIDE: f64 = 8.0;
 /// mesh: another mesh would have other folds.
 pub(crate) const EDGES: f64 = 8.0;
 
-/// The same for cloth that is sewn through itself. Such patterns have tens of thousands of vertices,
-/// so more of the continuation is done on coarser levels.
+/// The same for cloth that is sewn through itself. Such patterns have tens of thousands of
+/// vertices, so more of the continuation is done on coarser levels.
 pub(crate) const EDGES_THROUGH: f64 = 2.0;
 
 /// The range of factors by which bending is stiffer than that of the fabric.
@@ -50,8 +51,9 @@ pub(crate) struct BendingContinuation {
 }
 
 impl BendingContinuation {
-    /// The continuation of a garment of that size, the root of its area in metres, whose levels lower
-    /// bending to a bending length of so many edges. `None` where cloth has no bending or no weight.
+    /// The continuation of a garment of that size, the root of its area in metres, whose levels
+    /// lower bending to a bending length of so many edges. `None` where cloth has no bending or no
+    /// weight.
     pub(crate) fn of(cloths: &[&Fabric], gravity: f64, size: f64, edges: f64) -> Option<Self> {
         let of = |c: &&Fabric| (c.bending_warp.min(c.bending_weft) / (c.density * gravity)).cbrt();
         let length = cloths.iter().map(of).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
@@ -66,8 +68,8 @@ impl BendingContinuation {
         self.factor(self.first)
     }
 
-    /// The least factor whose folds edges of that length (m) resolve. It is one of the same sequence
-    /// for every mesh, so that all meshes pass through the same states.
+    /// The least factor whose folds edges of that length (m) resolve. It is one of the same
+    /// sequence for every mesh, so that all meshes pass through the same states.
     pub(crate) fn resolved(&self, edge: f64) -> f64 {
         let strides = (self.first() / self.factor(self.edges * edge)).log(STRIDE).floor();
         self.first() / STRIDE.powf(strides.max(0.0))

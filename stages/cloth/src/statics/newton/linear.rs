@@ -1,9 +1,9 @@
 //! The linear problem of each Newton step: matrix, factor and solution, kept from step to step.
 //!
-//! Method: a sparse Cholesky factorization by fronts (see `factor`). The pattern is that of the sheet
-//! and of the contacts of the last steps. Where the matrix is not positive definite, it is assembled
-//! without compression, then with more inertia. Cost: one factorization, O(n^1.5); a new order of
-//! elimination where contacts are new.
+//! Method: a sparse Cholesky factorization by fronts (see `factor`). The pattern is that of the
+//! sheet and of the contacts of the last steps. Where the matrix is not positive definite, it is
+//! assembled without compression, then with more inertia. Cost: one factorization, O(n^1.5); a new
+//! order of elimination where contacts are new.
 
 use crate::linear::Pattern;
 use crate::statics::factor::mixed::{Matrix, Mixed};
@@ -17,17 +17,17 @@ use std::collections::BTreeMap;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the compressive stress in the matrix near rest, where the matrix stays positive definite.
-/// With all of it the matrix is the true second derivative, which is indefinite in most states;
-/// without it, folds that are about to form are far too stiff.
+/// Share of the compressive stress in the matrix near rest, where the matrix stays positive
+/// definite. With all of it the matrix is the true second derivative, which is indefinite in most
+/// states; without it, folds that are about to form are far too stiff.
 const COMPRESSION: f64 = 0.7;
 
 /// Longest move of a step near rest, m. Farther from rest the matrix without compression converges
 /// sooner.
 const NEAR_REST: f64 = 2e-3;
 
-/// Inertia above which a matrix that is not positive definite must have numbers that are not finite,
-/// 1/s².
+/// Inertia above which a matrix that is not positive definite must have numbers that are not
+/// finite, 1/s².
 const MOST_INERTIA: f64 = 1e12;
 
 /// Steps for which contacts keep their places in the matrix. Contacts that end are often soon back,

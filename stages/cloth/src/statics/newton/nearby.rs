@@ -34,7 +34,8 @@ pub(crate) struct Nearby {
     jammed: bool,
 }
 
-/// Where the nodes of a subdomain were when it was cut out, and how far they may move from there, m.
+/// Where the nodes of a subdomain were when it was cut out, and how far they may move from there,
+/// m.
 struct Fence {
     at: Vec<Vec3>,
     reach: f64,
@@ -73,8 +74,8 @@ impl Nearby {
         Self { tree: None, at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
 
-    /// Of a subdomain with a tree of its own, which holds all triangles that its nodes may meet within
-    /// `reach` of `at`, m.
+    /// Of a subdomain with a tree of its own, which holds all triangles that its nodes may meet
+    /// within `reach` of `at`, m.
     pub(crate) fn fenced(tree: ClothTree, at: Vec<Vec3>, reach: f64) -> Self {
         Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
@@ -111,8 +112,8 @@ impl Nearby {
         self_contact.pairs = self.renewed(tree, self_contact, &self_contact.pairs, &moved, [x, moves]);
     }
 
-    /// The `known` pairs, with those of the `moved` nodes sought anew at their positions or, for one
-    /// step, along their moves.
+    /// The `known` pairs, with those of the `moved` nodes sought anew at their positions or, for
+    /// one step, along their moves.
     fn renewed(
         &self,
         tree: &ClothTree,
@@ -143,8 +144,8 @@ impl Nearby {
     }
 
     /// Changes moves that would lead cloth through cloth: the cloth gives way where it can, and
-    /// otherwise its moves are shortened until no pair collides. Returns the share of the moves that
-    /// is left, or 1 while intersections are resolved, which takes long moves.
+    /// otherwise its moves are shortened until no pair collides. Returns the share of the moves
+    /// that is left, or 1 while intersections are resolved, which takes long moves.
     pub(crate) fn limit(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
         if self.tree.is_none() && self.fence.is_none() {
             return 1.0;

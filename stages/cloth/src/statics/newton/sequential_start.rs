@@ -2,13 +2,13 @@
 //! before all of them move together.
 //!
 //! Method: block Gauss-Seidel, one sweep, as a start. If all cloths fell at once, each collision
-//! would shorten the step of all of them. One cloth that falls on cloth at rest is a small problem of
-//! some tens of steps. It carries the weight of all cloths that will lie on it, as if they had its
-//! shape (see [`Subdomain::standing_for`]). The whole stack then needs some tens of steps.
+//! would shorten the step of all of them. One cloth that falls on cloth at rest is a small problem
+//! of some tens of steps. It carries the weight of all cloths that will lie on it, as if they had
+//! its shape (see [`Subdomain::standing_for`]). The whole stack then needs some tens of steps.
 //!
 //! A cloth is solved as a subdomain with all triangles that it may meet within a reach. Where it
-//! leaves the reach, the subdomain is cut out anew. Cost: O(n) for each cut, and steps of the size of
-//! the subdomain. Limit: at least [`MANY`] cloths.
+//! leaves the reach, the subdomain is cut out anew. Cost: O(n) for each cut, and steps of the size
+//! of the subdomain. Limit: at least [`MANY`] cloths.
 
 use crate::scene::Scene;
 use crate::statics::factor::multifrontal::{Halt, Stop};
@@ -158,8 +158,8 @@ impl StackStart<'_> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Moves a subdomain until it is at rest, `watch` breaks or it leaves its reach; returns which of
-    /// the first two came first.
+    /// Moves a subdomain until it is at rest, `watch` breaks or it leaves its reach; returns which
+    /// of the first two came first.
     fn run<'s>(
         &self,
         mut subdomain: Subdomain<'s>,

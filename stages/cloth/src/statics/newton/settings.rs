@@ -11,8 +11,8 @@ pub struct StaticEquilibrium {
     pub models: Models,
     /// Cloth at rest gains less than this speed in a sixtieth of a second, m/s.
     pub speed: f64,
-    /// Share of the vertices that may gain more: some never come to rest where the surface of a body
-    /// folds.
+    /// Share of the vertices that may gain more: some never come to rest where the surface of a
+    /// body folds.
     pub non_static: f64,
     /// Nodes of the coarsest level, at most about this many.
     pub coarsest: usize,
@@ -30,11 +30,11 @@ pub struct StaticEquilibrium {
     /// Whether the cloth is solved from its present state on its own mesh alone, without coarser
     /// levels, so that it keeps its folds.
     pub from_here: bool,
-    /// Whether cloth passes through cloth while its seams close. Other cloth then does not keep them
-    /// open, and the crossings of the sewn garment are resolved.
+    /// Whether cloth passes through cloth while its seams close. Other cloth then does not keep
+    /// them open, and the crossings of the sewn garment are resolved.
     pub sew_through: bool,
-    /// Whether a step of at least a tenth of a second in which nothing is faster than `speed` proves
-    /// rest, too.
+    /// Whether a step of at least a tenth of a second in which nothing is faster than `speed`
+    /// proves rest, too.
     pub long_proof: bool,
     /// Precision of the factor of each step.
     pub precision: Precision,

@@ -10,6 +10,24 @@ use std::ops::ControlFlow;
 
 type Vec3 = Vector3<f64>;
 
+/// What proves that the cloth is at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Proof {
+    /// Any step in which nothing is fast.
+    AnyStep,
+    /// A proof step, of [`REST_STEP`](super::to_rest::REST_STEP), in which nothing is fast.
+    ProofStep,
+    /// A proof step, or a full step of at least `SLOW_STEP`, in which nothing is fast.
+    ProofOrLongStep,
+}
+
+impl Proof {
+    /// The proof of a final state; `long` if a long step proves rest, too.
+    pub(crate) fn of(long: bool) -> Self {
+        if long { Self::ProofOrLongStep } else { Self::ProofStep }
+    }
+}
+
 /// Options of Newton's method with pseudo-transient continuation.
 #[derive(Debug, Clone, Copy)]
 pub struct NewtonOptions {
@@ -25,15 +43,13 @@ pub struct NewtonOptions {
     pub non_static: f64,
     /// Farthest that a node may move in a step, m.
     pub farthest: f64,
-    /// Whether rest must be proved by a step of [`REST_STEP`].
-    pub prove: bool,
-    /// Whether a full step of at least [`SLOW_STEP`] in which nothing is fast proves rest, too.
-    pub long_proof: bool,
+    /// What proves that the cloth is at rest.
+    pub proof: Proof,
     /// Whether steps are made without a line search: cloth then slides over a rough surface, where
     /// some nodes never come to rest.
     pub skip_line_search: bool,
-    /// Whether a step that raises the potential because some of its nodes are stopped is solved again
-    /// with these nodes held still.
+    /// Whether a step that raises the potential because some of its nodes are stopped is solved
+    /// again with these nodes held still.
     pub holds_stopped: bool,
     /// Precision of the factor of each step.
     pub precision: Precision,
@@ -77,7 +93,7 @@ pub struct NewtonState {
     pub(crate) outcome: Outcome,
     /// The potentials of the last steps, for the non-monotone line search.
     pub(crate) history: Vec<f64>,
-    /// Whether the next step is a proof step, of [`REST_STEP`].
+    /// Whether the next step is a proof step, of [`REST_STEP`](super::to_rest::REST_STEP).
     pub(crate) verifying: bool,
     /// Consecutive proof steps.
     pub(crate) proof_steps: usize,
@@ -95,7 +111,8 @@ pub struct NewtonState {
     pub(crate) end: Option<StepEnd>,
     /// The moves of the last step, m.
     pub(crate) moves: Vec<Vec3>,
-    /// Whether the last step was shortened to the region in which the pairs of a subdomain are known.
+    /// Whether the last step was shortened to the region in which the pairs of a subdomain are
+    /// known.
     pub(crate) has_left: bool,
 }
 

@@ -1,9 +1,9 @@
 //! Subdomain solve: the active nodes of a system as a system of their own, with all others pinned.
 //!
-//! Method: nonlinear elimination (Lanzkron, Rose, Wilkes 1996). Near rest most of a garment is at rest
-//! while a few nodes buckle one after the other. The subdomain has the active nodes and the nodes to
-//! which elements, seams and contacts couple them. Cost: a step costs what its nodes cost; O(n) to cut
-//! it out. Limits: only the whole system can prove that it is at rest.
+//! Method: nonlinear elimination (Lanzkron, Rose, Wilkes 1996). Near rest most of a garment is at
+//! rest while a few nodes buckle one after the other. The subdomain has the active nodes and the
+//! nodes to which elements, seams and contacts couple them. Cost: a step costs what its nodes cost;
+//! O(n) to cut it out. Limits: only the whole system can prove that it is at rest.
 
 use crate::contact::friction::FrictionContact;
 use crate::energy::Subset;
@@ -65,16 +65,16 @@ impl<'a> Subdomain<'a> {
         pick(&self.nodes, of)
     }
 
-    /// The tree of its triangles, in which only those of active nodes seek pairs. `layout` is that of
-    /// the subdomain.
+    /// The tree of its triangles, in which only those of active nodes seek pairs. `layout` is that
+    /// of the subdomain.
     pub(crate) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
         let active: Vec<bool> = self.pick(self.cut.active());
         whole.part(&self.nodes, self.cut.index(), layout).with_active(&active)
     }
 
-    /// This subdomain as the lowest of `count` stacked ones of the same shape, so that the cloth below
-    /// carries them all. In the forces of one of them, contact and the loads of friction are smaller by
-    /// that factor.
+    /// This subdomain as the lowest of `count` stacked ones of the same shape, so that the cloth
+    /// below carries them all. In the forces of one of them, contact and the loads of friction are
+    /// smaller by that factor.
     pub(crate) fn standing_for(mut self, count: usize) -> Self {
         self.multiplicity = count as f64;
         self.scale_contact(1.0 / self.multiplicity);

@@ -1,10 +1,10 @@
 //! Newton's method with pseudo-transient continuation, on one level.
 //!
-//! Each step minimises the potential plus the inertia of a step of pseudo-time from rest. The step of
-//! pseudo-time grows as long as steps succeed: far from rest the cloth falls without overshooting,
-//! near rest the steps are those of Newton's method. A step is limited by the body, then by
-//! continuous collision detection of cloth with cloth (and solved again with a shorter step of
-//! pseudo-time if little of it is left), then by a non-monotone line search (see `line_search`):
+//! Each step minimises the potential plus the inertia of a step of pseudo-time from rest. The step
+//! of pseudo-time grows as long as steps succeed: far from rest the cloth falls without
+//! overshooting, near rest the steps are those of Newton's method. A step is limited by the body,
+//! then by continuous collision detection of cloth with cloth (and solved again with a shorter step
+//! of pseudo-time if little of it is left), then by a non-monotone line search (see `line_search`):
 //! cloth hardly stretches but bends freely, so a good step may first raise the potential.
 //!
 //! Limiting the moves of some nodes may turn the step of the others uphill, so that no share of it
@@ -18,12 +18,12 @@
 //! change, for the forces are those at the positions.
 //!
 //! Where a step moves few nodes, these and their neighbours are solved alone before the next step
-//! (see `active_subset`). Rest is proved with all nodes, by a short step in which none of them gains
-//! speed.
+//! (see `active_subset`). Rest is proved with all nodes, by a short step in which none of them
+//! gains speed.
 //!
-//! Cost of a step: one factorization, O(n^1.5), and O(n) for the rest. Consecutive proof steps share
-//! one factorization, for the cloth hardly moves in them. The next step reuses what the line search
-//! evaluated at its end. Limits: one of many equilibria is found.
+//! Cost of a step: one factorization, O(n^1.5), and O(n) for the rest. Consecutive proof steps
+//! share one factorization, for the cloth hardly moves in them. The next step reuses what the line
+//! search evaluated at its end. Limits: one of many equilibria is found.
 
 use crate::statics::factor::multifrontal::{Halt, Stop};
 use crate::statics::forces::system::System;
@@ -32,7 +32,7 @@ use crate::statics::newton::linear::Linear;
 use crate::statics::newton::nearby::Nearby;
 use crate::statics::newton::sequential_start::{StackStart, start_one_by_one};
 use crate::statics::newton::state::StepEnd;
-pub use crate::statics::newton::state::{NewtonOptions, NewtonState, Outcome, Watch, greatest};
+pub use crate::statics::newton::state::{NewtonOptions, NewtonState, Outcome, Proof, Watch, greatest};
 use nalgebra::Vector3;
 use toile_geometry::cloth_tree::ClothTree;
 
@@ -314,7 +314,7 @@ impl NewtonState {
     fn update(&mut self, system: &mut System<'_>, x: &[Vec3], limits: Limits, options: &NewtonOptions) {
         let speed = if self.verifying { options.speed } else { options.speed.min(CREEP) };
         let is_slow = self.outcome.speed < speed && !limits.is_led;
-        self.outcome.at_rest = is_slow && (self.verifying || !options.prove);
+        self.outcome.at_rest = is_slow && (self.verifying || options.proof == Proof::AnyStep);
         match self.verifying {
             true => self.update_after_proof_step(system),
             false => self.update_after_step(system, x, limits.kept, is_slow, options),
@@ -349,9 +349,10 @@ impl NewtonState {
             system.self_contact.iter_mut().for_each(|c| c.hold(false));
         }
         let is_slow_step = is_slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
-        self.outcome.at_rest |= is_slow_step && options.long_proof;
+        self.outcome.at_rest |= is_slow_step && options.proof == Proof::ProofOrLongStep;
         self.slow_steps = if is_slow_step { self.slow_steps + 1 } else { 0 };
-        self.verifying = options.prove && self.slow_steps >= if self.has_failed { SLOW_STEPS } else { 1 };
+        let least = if self.has_failed { SLOW_STEPS } else { 1 };
+        self.verifying = options.proof != Proof::AnyStep && self.slow_steps >= least;
     }
 
     /// Tells that the cloth has moved outside a step, so that nothing of its end can be reused.
@@ -396,7 +397,7 @@ pub fn relax(
     if let (true, Some(tree)) = (options.one_by_one, &tree)
         && start_one_by_one(
             system,
-            &StackStart { layout, tree, options: NewtonOptions { prove: false, ..*options }, stop },
+            &StackStart { layout, tree, options: NewtonOptions { proof: Proof::AnyStep, ..*options }, stop },
             x,
             watch,
         )?

@@ -4,7 +4,7 @@ use crate::scene::{Scene, generate};
 use crate::statics::factor::scalar::Precision;
 use crate::statics::forces::system::System;
 use crate::statics::levels::testing::on_its_body;
-use crate::statics::newton::to_rest::{NewtonOptions, relax};
+use crate::statics::newton::to_rest::{NewtonOptions, Proof, relax};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
@@ -39,12 +39,11 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
         speed: 1e-3,
         non_static: 0.0,
         farthest: 0.05,
-        prove: true,
+        proof: Proof::ProofStep,
         precision: Precision::Double,
         skip_line_search: false,
         holds_stopped: false,
         one_by_one: false,
-        long_proof: false,
         asleep: true,
     };
     let layout = scene.positions.clone();

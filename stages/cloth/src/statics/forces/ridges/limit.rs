@@ -1,9 +1,9 @@
 //! Keeps cloth from passing a sharp feature within a step: first the cloth gives way, then moves
 //! that would still pass are shortened.
 //!
-//! The method is that of cloth against cloth (see `contact/response` and `contact/step_limit`), with
-//! features that do not move. Impacts are found by additive continuous collision detection, so no
-//! step jumps over a thin feature. Cloth that the body already passes through is not held back.
+//! The method is that of cloth against cloth (see `contact/response` and `contact/step_limit`),
+//! with features that do not move. Impacts are found by additive continuous collision detection, so
+//! no step jumps over a thin feature. Cloth that the body already passes through is not held back.
 //!
 //! Cost: one collision test per pair and round.
 

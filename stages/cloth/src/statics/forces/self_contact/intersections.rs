@@ -18,8 +18,8 @@ type Vec3 = Vector3<f64>;
 pub(crate) const MERGED: f64 = 0.02;
 
 impl SelfContact {
-    /// Makes a spring for each crossing at `x`, and marks the nodes of crossings and merged pairs as
-    /// intersecting.
+    /// Makes a spring for each crossing at `x`, and marks the nodes of crossings and merged pairs
+    /// as intersecting.
     pub fn resolve_intersections(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
         let merged = self.merged(x);
         let free = crossings.is_empty() && merged.is_empty();
@@ -41,7 +41,7 @@ impl SelfContact {
         self.intersections.iter().map(|c| c.nodes).chain(self.merged(x).iter().map(|p| p.nodes)).collect()
     }
 
-    /// Whether a pair is merged: nearer than [`MERGED`] of the thickness.
+    /// Whether a pair is merged: nearer than `MERGED` of the thickness.
     pub fn is_merged(&self, pair: &Pair, x: &[Vec3]) -> bool {
         pair.closest(x).distance < MERGED * self.thickness
     }
@@ -67,8 +67,8 @@ impl SelfContact {
         Some(Contact { nodes, weights, normal, stiffness, potential })
     }
 
-    /// The side of a triangle on which an edge of another layer belongs: 1 outside, -1 inside; `None`
-    /// where they are in one layer.
+    /// The side of a triangle on which an edge of another layer belongs: 1 outside, -1 inside;
+    /// `None` where they are in one layer.
     fn side(&self, e: &[u32; 2], t: &[u32; 3]) -> Option<f64> {
         let of = |v: &u32| self.order.get(*v as usize).copied();
         let one = |nodes: &[u32]| {

@@ -2,9 +2,9 @@
 //! corner.
 //!
 //! In a stack, contacts that begin or end with every rounding at their full force would keep the
-//! cloth moving for ever. So their stiffness falls to zero towards the ends of edges and where edges
-//! are parallel (after the mollifier of Li et al. 2020), and pairs keep counting while they are
-//! near. Outside stacks contacts fade only at the very ends of edges.
+//! cloth moving for ever. So their stiffness falls to zero towards the ends of edges and where
+//! edges are parallel (after the mollifier of Li et al. 2020), and pairs keep counting while they
+//! are near. Outside stacks contacts fade only at the very ends of edges.
 
 use super::SelfContact;
 use nalgebra::Vector3;
@@ -21,16 +21,17 @@ const EDGE_SLACK: f64 = 0.2;
 /// Share of an edge from its end within which its contact with an edge fades in a stack.
 const STACK_END: f64 = 0.1;
 
-/// The same outside stacks. It is small because the ends must carry where folds press on each other.
+/// The same outside stacks. It is small because the ends must carry where folds press on each
+/// other.
 const END: f64 = 0.005;
 
 /// Square of the sine of the angle between two edges below which their contact fades.
 const PARALLEL: f64 = 0.01;
 
 impl SelfContact {
-    /// How far a node may move before pairs are sought anew, m. A longer slack lasts for more steps,
-    /// but it brings more pairs: of triangles with their neighbours' neighbours, and in a stack of
-    /// many sheets.
+    /// How far a node may move before pairs are sought anew, m. A longer slack lasts for more
+    /// steps, but it brings more pairs: of triangles with their neighbours' neighbours, and in a
+    /// stack of many sheets.
     #[must_use]
     pub fn slack(&self) -> f64 {
         let least = SLACK * self.thickness;

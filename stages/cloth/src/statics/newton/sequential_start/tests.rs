@@ -7,6 +7,7 @@ use crate::statics::drive::solve::{StaticEquilibrium, StaticsError};
 use crate::statics::factor::scalar::Precision;
 use crate::statics::levels::assemble::{Collider, assemble, cloths as fabrics};
 use crate::statics::levels::pieces::Pieces;
+use crate::statics::newton::state::Proof;
 use crate::statics::newton::to_rest::Outcome;
 
 const CELLS: u32 = 4;
@@ -34,11 +35,10 @@ fn options() -> NewtonOptions {
         speed: 1e-3,
         non_static: 0.0,
         farthest: 0.1,
-        prove: false,
+        proof: Proof::AnyStep,
         skip_line_search: false,
         holds_stopped: false,
         one_by_one: true,
-        long_proof: false,
         asleep: true,
         precision: Precision::Mixed,
     }
