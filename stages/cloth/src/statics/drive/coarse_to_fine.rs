@@ -50,6 +50,17 @@ pub(crate) enum Draped {
     },
 }
 
+/// The mesh of a level during a run.
+#[derive(Clone, Copy)]
+pub(crate) struct LevelMesh<'m> {
+    /// The level index, from fine to coarse.
+    pub(crate) k: usize,
+    /// The open or sewn sheet.
+    pub(crate) sheet: &'m Sheet,
+    /// The places that order the elimination.
+    pub(crate) layout: &'m [Vec3],
+}
+
 /// The state of a try.
 pub(crate) struct Solve<'a> {
     pub(crate) plan: &'a Plan<'a>,
@@ -111,9 +122,8 @@ impl<'a> Solve<'a> {
     /// Moves nodes out where triangles between them dip into the body, and relaxes the cloth again.
     pub(crate) fn restore_clearance(
         &mut self,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
         options: &NewtonOptions,
         progress: &mut Progress<'_>,
@@ -121,7 +131,7 @@ impl<'a> Solve<'a> {
         let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
         for _ in 0..CLEARANCE_ROUNDS {
             let Some(Clearance { lacks, depth, triangles }) =
-                self.plan.body.map(|c| clearance(sheet, c.surface, x))
+                self.plan.body.map(|c| clearance(mesh.sheet, c.surface, x))
             else {
                 break;
             };
@@ -132,7 +142,7 @@ impl<'a> Solve<'a> {
             if let Some(contact) = &mut system.body_contact {
                 contact.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
-            let report = self.relax_uncrossed(0, system, sheet, layout, x, &options, progress)?;
+            let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
             self.reports.push(report);
         }
         Ok(())
@@ -188,22 +198,20 @@ impl<'a> Solve<'a> {
         }
     }
 
-    /// Runs Newton's method on level `k` until it is at rest or `done`.
+    /// Runs Newton's method on one level until it is at rest or `done`.
     ///
     /// # Errors
     /// Cloth falls past the body, time is over, the caller stops, or a step has no solution.
-    #[allow(clippy::too_many_arguments)]
     pub(crate) fn relax(
         &self,
-        k: usize,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
         options: &NewtonOptions,
         done: &dyn Fn(&System<'_>, &[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
+        let LevelMesh { k, sheet, layout } = mesh;
         let sewing = self.joined_at.is_none() && !system.seam_forces.is_empty();
         let meets = system.self_contact.is_some() && !(sewing && self.sews_through);
         let tree = meets.then(|| self.plan.tree(k, sheet, layout, sewing));

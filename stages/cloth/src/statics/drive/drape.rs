@@ -5,7 +5,7 @@
 //! of bending. While a level is solved, another thread prepares the next finer one. Only the finest
 //! level must prove that it is at rest. Cost and limits: see `solve`.
 
-use crate::statics::drive::coarse_to_fine::{Draped, Solve};
+use crate::statics::drive::coarse_to_fine::{Draped, LevelMesh, Solve};
 use crate::statics::drive::held::hold_as;
 use crate::statics::levels::bending_continuation::stages;
 use crate::statics::levels::mesh_level::Level;
@@ -229,7 +229,7 @@ impl<'a> Solve<'a> {
                 c.offsets.clone()
             });
         let Level { system, sheet, layout, x, .. } = &mut *level;
-        let run = self.relax_uncrossed(k, system, sheet, layout, x, &options, progress);
+        let run = self.relax_uncrossed(LevelMesh { k, sheet, layout }, system, x, &options, progress);
         if let (Some(contact), Some(offsets)) = (&mut level.system.body_contact, offsets) {
             (contact.grows_offsets, contact.offsets) = (false, offsets);
         }
@@ -250,9 +250,10 @@ impl<'a> Solve<'a> {
         let options =
             NewtonOptions { first: FIRST_ON_FINEST, steps, speed, proof, one_by_one, ..self.options() };
         let Level { system, sheet, layout, x, .. } = level;
-        let report = self.relax_uncrossed(0, system, sheet, layout, x, &options, progress)?;
+        let mesh = LevelMesh { k: 0, sheet, layout };
+        let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
         self.reports.push(report);
-        self.restore_clearance(system, sheet, layout, x, &options, progress)
+        self.restore_clearance(mesh, system, x, &options, progress)
     }
 
     /// Whether the cloths of a stack start one by one on level `k`. Finer levels start from the

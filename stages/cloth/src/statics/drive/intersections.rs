@@ -6,7 +6,7 @@
 //! Cost: one more run from near rest a try. Limits: after the last try crossings may be left.
 
 use crate::mesh::Sheet;
-use crate::statics::drive::coarse_to_fine::Solve;
+use crate::statics::drive::coarse_to_fine::{LevelMesh, Solve};
 use crate::statics::drive::contour::uncross;
 use crate::statics::forces::system::System;
 use crate::statics::newton::patience::{Patience, Shrinking};
@@ -27,41 +27,38 @@ const SWEEPS: usize = 30;
 const PATIENCE: Patience = Patience { steps: 25, share: 0.0 };
 
 impl Solve<'_> {
-    /// Relaxes level `k`. Where cloth that was sewn through itself still intersects itself, smooths
+    /// Relaxes a level. Where cloth that was sewn through itself still intersects itself, smooths
     /// it and relaxes it again.
     pub(crate) fn relax_uncrossed(
         &self,
-        k: usize,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
         options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
         if !self.plan.settings.sew_through {
-            return self.relax(k, system, sheet, layout, x, options, &|_, _| false, progress);
+            return self.relax(mesh, system, x, options, &|_, _| false, progress);
         }
-        let mut report = self.relax_until_stuck(k, system, sheet, layout, x, options, progress)?;
+        let mut report = self.relax_until_stuck(mesh, system, x, options, progress)?;
         for rings in RINGS {
             if !system.is_intersecting() {
                 break;
             }
-            if uncross(sheet, &self.plan.tree(k, sheet, x, false), &system.pinned, x) > 0 {
-                smooth(sheet, x, &around(system, sheet, rings));
+            let tree = self.plan.tree(mesh.k, mesh.sheet, x, false);
+            if uncross(mesh.sheet, &tree, &system.pinned, x) > 0 {
+                smooth(mesh.sheet, x, &around(system, mesh.sheet, rings));
             }
-            report = self.relax_until_stuck(k, system, sheet, layout, x, options, progress)?;
+            report = self.relax_until_stuck(mesh, system, x, options, progress)?;
         }
         Ok(report)
     }
 
-    /// Relaxes level `k` until it is at rest, or the number of intersecting nodes falls no more.
+    /// Relaxes a level until it is at rest, or the number of intersecting nodes falls no more.
     fn relax_until_stuck(
         &self,
-        k: usize,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
         options: &NewtonOptions,
         progress: &mut Progress<'_>,
@@ -71,7 +68,7 @@ impl Solve<'_> {
             let count = intersecting(system);
             !shrinking.goes_on(count as f64) && count > 0
         };
-        self.relax(k, system, sheet, layout, x, options, &is_stuck, progress)
+        self.relax(mesh, system, x, options, &is_stuck, progress)
     }
 }
 

@@ -9,7 +9,7 @@
 use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use crate::scene::Seam;
-use crate::statics::drive::coarse_to_fine::Solve;
+use crate::statics::drive::coarse_to_fine::{LevelMesh, Solve};
 use crate::statics::drive::contour::uncross;
 use crate::statics::forces::height_springs::HeightSprings;
 use crate::statics::forces::seam_force::{SeamForce, widest};
@@ -232,16 +232,8 @@ impl Solve<'_> {
                 let gap = widest(x, pairs);
                 gap < self.plan.settings.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
             };
-            let report = self.relax(
-                coarsest,
-                &mut system,
-                sheet,
-                &self.plan.starts[coarsest],
-                x,
-                &options,
-                &closed,
-                progress,
-            )?;
+            let mesh = LevelMesh { k: coarsest, sheet, layout: &self.plan.starts[coarsest] };
+            let report = self.relax(mesh, &mut system, x, &options, &closed, progress)?;
             self.reports.push(report);
             pull *= GROWTH;
         }
@@ -291,8 +283,8 @@ impl Solve<'_> {
             asleep: false,
             ..self.options()
         };
-        let report =
-            self.relax(coarsest, &mut system, &sheet, &start, &mut x, &options, &|_, x| done(x), progress)?;
+        let mesh = LevelMesh { k: coarsest, sheet: &sheet, layout: &start };
+        let report = self.relax(mesh, &mut system, &mut x, &options, &|_, x| done(x), progress)?;
         self.reports.push(report);
         self.x = x;
         Ok(())
@@ -342,16 +334,9 @@ impl Solve<'_> {
             ..self.options()
         };
         let layout = x.to_vec();
-        let report = self.relax(
-            self.plan.coarsest_level(),
-            &mut self.open(sheet, continuation.first())?,
-            sheet,
-            &layout,
-            x,
-            &options,
-            &|_, _| false,
-            progress,
-        )?;
+        let mesh = LevelMesh { k: self.plan.coarsest_level(), sheet, layout: &layout };
+        let system = &mut self.open(sheet, continuation.first())?;
+        let report = self.relax(mesh, system, x, &options, &|_, _| false, progress)?;
         self.reports.push(report);
         Ok(())
     }
