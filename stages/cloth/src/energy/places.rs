@@ -80,7 +80,7 @@ impl Places {
     }
 }
 
-/// First shares at other slots; nothing where there are none.
+/// First shares at other slots; empty where there are none.
 fn moved(starts: &[u32], slots: &[u32], blocks: usize) -> Vec<u32> {
     let Some(end) = starts.last() else { return Vec::new() };
     let mut moved = Vec::with_capacity(blocks + 1);

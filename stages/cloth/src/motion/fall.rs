@@ -9,7 +9,7 @@ use crate::statics::drive::solve::Collider;
 use crate::statics::levels::cloths::pieces_of_scene;
 use crate::statics::levels::pieces::Pieces;
 
-/// What tells a fall.
+/// What a fall is found by.
 pub(super) struct Falls {
     body: BodyBox,
     /// The piece of each vertex, and of each node once seams are joined, with what is pinned.

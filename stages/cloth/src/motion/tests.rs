@@ -153,7 +153,7 @@ fn a_sewn_motion_ends_when_the_seams_are_joined() {
     assert!(moved.converged && moved.joined_at.unwrap() < 5e-4);
 }
 
-/// The height of a small sheet let go 0.2 m above a floor of a great box, at its highest after it
+/// The height of a small sheet released 0.2 m above a floor of a great box, at its highest after it
 /// has met it.
 fn bounce(response: Response) -> f64 {
     let mut scene = falling(2);

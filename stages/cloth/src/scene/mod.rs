@@ -1,8 +1,7 @@
 //! Prepared scenes: panels, seams, a body and what the cloth is made of.
 //!
-//! A scene is what a solver starts from and what a judge measures against; `read` reads the JSON
-//! form `garment-scene-1` (described in docs/reference/scene.md), `generate` makes the standard
-//! ones.
+//! A scene is the input of every solver; `read` reads the JSON form `garment-scene-1` (described in
+//! docs/reference/scene.md), `generate` makes the standard ones.
 
 mod build;
 mod check;
@@ -40,29 +39,29 @@ pub struct Scene {
     pub name: String,
     /// Flat rest coordinates of every vertex, m; warp along y.
     pub rest: Vec<Vector2<f64>>,
-    /// Where every vertex starts, m; y is up.
+    /// The initial position of every vertex, m; y is up.
     pub positions: Vec<Vector3<f64>>,
     /// Vertices of each triangle, counter-clockwise at rest.
     pub triangles: Vec<[u32; 3]>,
-    /// The pieces it is cut from.
+    /// The panels.
     pub panels: Vec<Panel>,
-    /// What has to be sewn.
+    /// The seams.
     pub seams: Vec<Seam>,
     /// Elastic bands sewn to it.
     pub bands: Vec<Band>,
-    /// Vertices that stay where they start.
+    /// Pinned vertices.
     pub pinned: Vec<u32>,
-    /// What it is worn by.
+    /// The body, if any.
     pub body: Option<SceneBody>,
-    /// What panels are made of that do not say otherwise.
+    /// The fabric of panels without one of their own.
     pub material: Fabric,
-    /// Strain that warp and weft may reach; none where it is the fabric's affair.
+    /// Strain limit of warp and weft; `None` for that of the fabric alone.
     pub strain_limit: Option<StrainLimit>,
-    /// What acts, one after the other.
+    /// The phases, one after the other.
     pub phases: Vec<Phase>,
-    /// Whether a right answer needs cloth to collide with itself.
+    /// Whether the cloth collides with itself.
     pub self_collision: bool,
-    /// How friction holds it where it starts; nothing where it does not come from a state of rest.
+    /// The history of friction at the start; empty unless the scene starts from an equilibrium.
     pub held: Held,
 }
 
@@ -84,7 +83,7 @@ pub struct Panel {
     pub layer: u32,
 }
 
-/// Pairs of vertices that end up at one place.
+/// A seam: pairs of vertices that are sewn together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seam {
     /// What it is called.
@@ -136,7 +135,7 @@ pub struct Phase {
     pub seconds: f64,
     /// m/s².
     pub gravity: Vector3<f64>,
-    /// What the cloth moves in; none for a vacuum.
+    /// The air; `None` for a vacuum.
     pub air: Option<Air>,
 }
 
@@ -312,7 +311,7 @@ pub enum SceneError {
         /// What to do.
         hint: String,
     },
-    /// A body that is nothing.
+    /// A body without triangles.
     #[error("the body has no triangles; leave it out where there is none")]
     EmptyBody,
     /// A fault of the numbers.

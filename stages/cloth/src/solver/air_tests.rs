@@ -110,7 +110,7 @@ fn wind_gives_a_free_sheet_its_momentum_to_the_exact_amount_whatever_the_step() 
             // The first of central differences' steps moves velocities by half of its length.
             let t = if k == 1 { time - first_half(&flown, dt) } else { time };
             let exact = wind - Vec3::new(left(3.0, AIR.tangential, t), 0.0, -left(8.0, AIR.normal, t));
-            // Turns bound the grip by its greatest part: over long steps the lesser one is left by
+            // Iterations bound drag by its greatest part: over long steps the lesser one is left by
             // some of them.
             let left_over = if k == 3 && dt > 0.05 { 5e-4 } else { 1e-7 };
             assert!((v - exact).norm() < left_over, "{} at {dt}: {v} against {exact}", solver.name());

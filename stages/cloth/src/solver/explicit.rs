@@ -46,7 +46,7 @@ impl CentralDifferences {
         Self { step: Step::Fixed(dt), limit: 0.0, since_look: STEPS_PER_LOOK, last_dt: 0.0 }
     }
 
-    /// Always this step (s), stable or not: to see where motion blows up.
+    /// Always this step (s), stable or not, to show where motion diverges.
     #[must_use]
     pub fn unguarded(dt: f64) -> Self {
         Self { step: Step::Unguarded(dt), limit: 0.0, since_look: 0, last_dt: 0.0 }

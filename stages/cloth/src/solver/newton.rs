@@ -219,7 +219,7 @@ fn largest_ratio(h: &BlockMatrix, masses: &[f64]) -> f64 {
 }
 
 /// The whole step if it halves the residual and the energy rises by no more than its rounding can:
-/// forces then still tell the way.
+/// the residual then still decides.
 fn whole_step(
     energies: &[&dyn Energy],
     x: &[Vec3],

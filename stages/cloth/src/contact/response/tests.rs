@@ -6,7 +6,8 @@ use crate::scene::generate;
 use proptest::prelude::*;
 use toile_geometry::cloth_tree::ClothTree;
 
-/// Two sheets of 25 nodes each, one so far over the other, and what may meet on the way of `moves`.
+/// Two sheets of 25 nodes each, one so far over the other, and the pairs that may collide in
+/// `moves`.
 fn two(apart: f64, moves: impl Fn(usize, &Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec3>, Vec<Pair>, ClothTree) {
     let one = generate::hang(4);
     let mut scene = one.clone();
@@ -26,7 +27,7 @@ fn two(apart: f64, moves: impl Fn(usize, &Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec3
     (x, moves, pairs, tree)
 }
 
-/// What the cloth does where some of it would meet; nothing where none does.
+/// The response where cloth would collide; `None` where none does.
 fn given(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair], held: &[bool]) -> Option<Vec<bool>> {
     let meeting = colliding(x, moves, pairs);
     (!meeting.is_empty()).then(|| respond(x, moves, pairs, meeting, held))

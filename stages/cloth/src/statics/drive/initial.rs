@@ -22,7 +22,7 @@ use crate::statics::newton::to_rest::NewtonOptions;
 use crate::statics::report::equilibrium::Progress;
 use crate::statics::report::error::StaticsError;
 
-/// Newton steps of a run: a skirt without friction may turn about its body for ever.
+/// Newton steps of a run: a skirt without friction may keep turning about its body.
 const FIRST_STEPS: usize = 40;
 
 /// Stiffnesses that are tried, the greatest first. A garment that slides off with each of them,

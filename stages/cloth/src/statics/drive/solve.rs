@@ -38,7 +38,7 @@ use crate::statics::newton::sequential_start::stack_size;
 pub use crate::statics::newton::settings::StaticEquilibrium;
 pub use crate::statics::report::equilibrium::{Equilibrium, LevelReport, Progress};
 pub use crate::statics::report::error::{StaticsError, Unsolvable};
-use crate::statics::report::intersecting::tangled;
+use crate::statics::report::intersecting::intersecting_error;
 pub use crate::statics::report::load::Load;
 pub use crate::statics::report::start::StartError;
 use crate::statics::report::start::{check, check_lying, moved_out};
@@ -118,7 +118,7 @@ impl StaticEquilibrium {
                 }
                 // There is no finer level to start from.
                 (Ok(Draped::Tangled(entangled)), None) => {
-                    return Err(tangled(scene, gravity(scene).norm(), entangled));
+                    return Err(intersecting_error(scene, gravity(scene).norm(), entangled));
                 }
                 (Ok(Draped::Tangled(entangled)), Some(finer)) => entangled.nodes.max(finer),
                 (Ok(Draped::TooCoarse { finer }), _) => finer,

@@ -96,8 +96,8 @@ fn take_strip<T: Real>(to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
 }
 
 /// The factor of a fixed matrix and what it leaves of the border, to show this machine's
-/// arithmetic; see [`crate::statics::factor::probe`]. The matrix is strictly dominated by its diagonal, so
-/// it has a factor.
+/// arithmetic; see [`crate::statics::factor::probe`]. The matrix is strictly dominated by its
+/// diagonal, so it has a factor.
 pub(crate) fn probe_factor<T: Real>(rows: usize, columns: usize) -> Vec<f64> {
     let value =
         |r: usize, c: usize| if r == c { 2.0 * rows as f64 } else { ((r * c + r + c) % 97) as f64 / 97.0 };

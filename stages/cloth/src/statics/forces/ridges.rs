@@ -330,7 +330,7 @@ impl Ridges {
 
     /// Whether the body passes through the cloth at `x` near a feature: through its triangles, or
     /// because an edge of the cloth leads into the body. The second finds a thin plate, where the
-    /// side of a feature does not tell.
+    /// side of a feature does not decide.
     pub(crate) fn is_pierced(&self, body_contact: &BodyContact<'_>, x: &[Vec3]) -> bool {
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.deepest());
         !leads_in(body_contact, &pairs, x).is_empty()

@@ -58,7 +58,7 @@ impl BendingContinuation {
         let of = |c: &&Fabric| (c.bending_warp.min(c.bending_weft) / (c.density * gravity)).cbrt();
         let length = cloths.iter().map(of).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
         // Bending so small that the first factor is not finite counts as none: lowering it would
-        // take for ever.
+        // never end.
         Some(Self { length, first: FIRST_LENGTH * size, edges })
             .filter(|g| g.first().is_finite() && length.is_finite())
     }

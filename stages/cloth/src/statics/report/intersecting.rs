@@ -25,7 +25,7 @@ pub(crate) struct Entangled {
 }
 
 /// The error of intersections of the finest level that were not resolved.
-pub(crate) fn tangled(scene: &Scene, gravity: f64, entangled: Entangled) -> StaticsError {
+pub(crate) fn intersecting_error(scene: &Scene, gravity: f64, entangled: Entangled) -> StaticsError {
     let Entangled { panels, pairs, at, .. } = entangled;
     let panels = panels.map(|p| words::panel(scene, p));
     StaticsError::Tangled { panels, pairs, at, load: Load::of(scene, gravity) }

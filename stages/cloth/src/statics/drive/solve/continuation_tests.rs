@@ -1,4 +1,4 @@
-//! Bending that is let go by steps: what it is for, and what it must leave alone.
+//! Bending continuation: what it improves, and what it must not change.
 #![allow(clippy::unwrap_used)]
 use super::tests::{crossings, deepest, strains};
 use super::*;

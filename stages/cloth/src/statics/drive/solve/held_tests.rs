@@ -1,4 +1,4 @@
-//! Cloth whose yarns rub on each other keeps a part of its folds.
+//! Cloth with bending hysteresis keeps a part of its folds.
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::energy::Vec3;
@@ -35,7 +35,7 @@ fn bent(layout: Layout, along: usize, ratio: f64) -> Scene {
     scene
 }
 
-/// The curvature that is left when the strip is let go, by the turn between its ends' edges, 1/m.
+/// The curvature that is left when the strip is released, by the turn between its ends' edges, 1/m.
 fn left(layout: Layout, along: usize, ratio: f64) -> f64 {
     let scene = bent(layout, along, ratio);
     let settings = StaticEquilibrium { speed: 1e-5, ..StaticEquilibrium::default() };

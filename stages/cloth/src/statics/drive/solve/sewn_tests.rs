@@ -1,4 +1,4 @@
-//! What sewing does beside plain seams, looked at in the result.
+//! Sewing beside plain seams: gathers, darts, pleats, bands and folds.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;

@@ -29,7 +29,7 @@ fn self_contact(triangle: [u32; 3]) -> SelfContact {
     }
 }
 
-/// SelfContact that have touched at `x` and slid on.
+/// Self-contact that has touched at `x`, and the positions after it has slid.
 fn slid(way: Vec3) -> (SelfContact, Vec<Vec3>) {
     let (mut self_contact, mut x) = (self_contact([0, 1, 2]), places());
     self_contact.update_contacts(&x);
@@ -119,13 +119,13 @@ fn force_and_matrix_are_derivatives_and_the_matrix_never_softens() {
     }
     let scale = all.norm();
     assert!(all.clone().symmetric_eigenvalues().iter().all(|e| *e > -1e-12 * scale));
-    let rub: f64 = self_contact.friction_contacts.iter().map(|g| g.coulomb().value(&g.at(&x))).sum();
-    assert!(rub > 0.0);
+    let friction: f64 = self_contact.friction_contacts.iter().map(|c| c.coulomb().value(&c.at(&x))).sum();
+    assert!(friction > 0.0);
     let normal = self_contact.contacts[0].normal;
     for (i, c) in (0..5).flat_map(|i| [0, 2].map(|c| (i, c))) {
         let (h, was) = (1e-8, x[i][c]);
         let value = |x: &[Vec3]| -> f64 {
-            self_contact.friction_contacts.iter().map(|g| g.coulomb().value(&g.at(x))).sum()
+            self_contact.friction_contacts.iter().map(|c| c.coulomb().value(&c.at(x))).sum()
         };
         x[i][c] = was + h;
         let (up, more) = (value(&x), gradient(&x));

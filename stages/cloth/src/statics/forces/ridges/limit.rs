@@ -65,7 +65,7 @@ impl Ridges {
         }
     }
 
-    /// Shortens moves, node by node, so that no pair meets.
+    /// Shortens moves, node by node, so that no pair collides.
     pub(crate) fn limit_step(&self, x: &[Vec3], moves: &mut [Vec3]) {
         for _ in 0..ROUNDS {
             let hits = self.impacts(x, moves);
@@ -81,7 +81,7 @@ impl Ridges {
         self.scale_step(x, moves);
     }
 
-    /// Shortens all moves alike, so that no pair meets.
+    /// Shortens all moves alike, so that no pair collides.
     pub(crate) fn scale_step(&self, x: &[Vec3], moves: &mut [Vec3]) {
         let least = self.impacts(x, moves).iter().map(|(_, t)| *t).fold(1.0, f64::min);
         if least < 1.0 {
@@ -89,7 +89,7 @@ impl Ridges {
         }
     }
 
-    /// The pairs that would meet, and when.
+    /// The pairs that would collide, and their times of impact.
     fn impacts(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(Pair, f64)> {
         let hit = |p: &Pair| {
             if self.is_free(p) {

@@ -31,7 +31,7 @@ impl SelfContact {
         self.intersections = crossings.iter().filter_map(|(e, t)| self.intersection(*e, *t, x)).collect();
     }
 
-    /// Pairs so near that barrier and collision detection would keep them there for ever.
+    /// Pairs so near that barrier and collision detection would never let them separate.
     fn merged(&self, x: &[Vec3]) -> Vec<Pair> {
         self.pairs.par_iter().with_min_len(256).filter(|p| self.is_merged(p, x)).copied().collect()
     }

@@ -2,9 +2,9 @@
 //! corner.
 //!
 //! In a stack, contacts that begin or end with every rounding at their full force would keep the
-//! cloth moving for ever. So their stiffness falls to zero towards the ends of edges and where
-//! edges are parallel (after the mollifier of Li et al. 2020), and pairs keep counting while they
-//! are near. Outside stacks contacts fade only at the very ends of edges.
+//! cloth moving. So their stiffness falls to zero towards the ends of edges and where edges are
+//! parallel (after the mollifier of Li et al. 2020), and pairs keep counting while they are near.
+//! Outside stacks contacts fade only at the very ends of edges.
 
 use super::SelfContact;
 use nalgebra::Vector3;

@@ -49,7 +49,7 @@ fn wanted(tree: &ClothTree, x: &[Vec3], moves: &[Vec3], thickness: f64) -> Vec<P
     [0.0, 0.5, 1.0].into_iter().flat_map(on_the_way).collect()
 }
 
-/// The layers know these pairs, each once.
+/// Self-contact has these pairs, each once.
 fn known(system: &System<'_>, wanted: &[Pair]) {
     let pairs = &system.self_contact.as_ref().unwrap().pairs;
     assert!(pairs.windows(2).all(|w| w[0] < w[1]));
@@ -128,9 +128,9 @@ fn layers_that_lie_in_each_other_and_meet_are_taken_apart_as_crossings_are() {
         nearby.limit(&mut system, &x, &mut moves);
         assert!(nearby.is_intersecting(&system) && !system.is_intersecting());
         nearby.resolve_intersections(&mut system, &x);
-        let tangled = &system.self_contact.as_ref().unwrap().intersecting;
-        assert!(tangled[..2 * each].iter().all(|t| *t) && !tangled[2 * each..].contains(&true));
-        // A pile has layers under great loads that near each other and are held apart.
+        let intersecting = &system.self_contact.as_ref().unwrap().intersecting;
+        assert!(intersecting[..2 * each].iter().all(|t| *t) && !intersecting[2 * each..].contains(&true));
+        // The layers of a stack come near each other under great loads and are held apart.
         system.self_contact.as_mut().unwrap().stacked = true;
         system.self_contact.as_mut().unwrap().intersecting.clear();
         let mut moves: Vec<Vec3> =

@@ -7,8 +7,8 @@ use crate::statics::levels::testing::on_its_body;
 use crate::statics::newton::nearby::Nearby;
 use toile_geometry::cloth_tree::ClothTree;
 
-/// A square on a ball, creased, in contact with the ball and with itself; every third node is awake
-/// in the half of greater x.
+/// A square on a ball, creased, in contact with the ball and with itself; every third node is
+/// active in the half of greater x.
 fn with_subdomain(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
     let mut scene: Scene = generate::drape(14);
     scene.material.bending_friction_warp = 1e-6;

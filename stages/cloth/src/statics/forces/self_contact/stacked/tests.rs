@@ -76,7 +76,7 @@ fn while_a_pile_is_proved_what_has_touched_counts_as_long_as_it_is_near() {
     stack.hold(true);
     assert_eq!([count(&mut stack, 1e-5), count(&mut stack, -1e-5), count(&mut stack, 1e-5)], [0, 1, 1]);
     assert_eq!(count(&mut stack, 1.1 * THICK), 0);
-    // What it has held once it holds until it is told otherwise.
+    // A held pair stays held until holding is switched off.
     stack.hold(true);
     assert_eq!(count(&mut stack, 1e-5), 1);
     stack.hold(false);
