@@ -1,4 +1,4 @@
-//! A pipeline's collision scheme as the engine's skin.
+//! A pipeline's collision scheme as a collision surface of the engine.
 
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};

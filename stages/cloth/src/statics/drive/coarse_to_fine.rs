@@ -18,7 +18,7 @@ use crate::statics::levels::cloths::pieces_of;
 use crate::statics::newton::to_rest::{NewtonOptions, Outcome, relax};
 use crate::statics::report::equilibrium::{Equilibrium, LevelReport, Progress};
 use crate::statics::report::error::StaticsError;
-use crate::statics::report::intersecting::{Entangled, unsolvable};
+use crate::statics::report::intersecting::{Intersections, unsolvable};
 use crate::statics::report::unbalanced::unbalanced;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -41,7 +41,7 @@ const MOST_CROSSED: usize = 4000;
 pub(crate) enum Draped {
     Equilibrium(Box<Equilibrium>),
     /// The cloth of a level intersects itself, and the intersections could not be resolved.
-    Tangled(Entangled),
+    Intersecting(Intersections),
     /// The body passes through a coarse level between its vertices, or the cloth sewn on it stays
     /// intersected.
     TooCoarse {

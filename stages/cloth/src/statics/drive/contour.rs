@@ -73,8 +73,8 @@ pub(crate) fn uncross(sheet: &Sheet, tree: &ClothTree, pinned: &[bool], x: &mut 
         let step = if since > SWEEPS_UNTIL_SHORTER { SHORTER_MOVE * LONGEST_MOVE } else { LONGEST_MOVE };
         let mut moves = vec![(Vec3::zeros(), 0.0); at.len()];
         for (e, t) in &crossings {
-            let found = beside.get(e).and_then(|sides| meeting(*e, *t, sides, &at));
-            let Some(Meeting { gradient, along, on }) = found else { continue };
+            let found = beside.get(e).and_then(|sides| crossing(*e, *t, sides, &at));
+            let Some(Crossing { gradient, along, on }) = found else { continue };
             let way =
                 gradient * (step * mean / (gradient.norm_squared() + HALF_GRADIENT * HALF_GRADIENT).sqrt());
             let edge = [(e[0], 1.0 - along), (e[1], along)];
@@ -101,7 +101,7 @@ fn beside(e: &Edge) -> ([u32; 2], Beside) {
 }
 
 /// A crossing: an edge that passes through a triangle.
-struct Meeting {
+struct Crossing {
     /// The direction in which the edge moves against the triangle to shorten the contour. Its
     /// length is the change of the contour length per move.
     gradient: Vec3,
@@ -111,7 +111,7 @@ struct Meeting {
     on: [f64; 3],
 }
 
-fn meeting(e: [u32; 2], t: [u32; 3], sides: &Beside, x: &[Vec3]) -> Option<Meeting> {
+fn crossing(e: [u32; 2], t: [u32; 3], sides: &Beside, x: &[Vec3]) -> Option<Crossing> {
     let [p, q] = e.map(|v| x[v as usize]);
     let [a, b, c] = t.map(|v| x[v as usize]);
     let area = (b - a).cross(&(c - a));
@@ -134,7 +134,7 @@ fn meeting(e: [u32; 2], t: [u32; 3], sides: &Beside, x: &[Vec3]) -> Option<Meeti
         gradient += line - normal * (2.0 * edge.dot(&line) / steep);
     }
     let weight = |u: Vec3, v: Vec3| (u - at).cross(&(v - at)).dot(&normal) / area.norm();
-    Some(Meeting { gradient, along, on: [weight(b, c), weight(c, a), weight(a, b)] })
+    Some(Crossing { gradient, along, on: [weight(b, c), weight(c, a), weight(a, b)] })
 }
 
 /// Shortens stretched edges to their rest lengths. Compressed edges stay: cloth folds instead.

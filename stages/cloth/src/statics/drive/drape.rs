@@ -12,7 +12,7 @@ use crate::statics::levels::mesh_level::Level;
 use crate::statics::newton::to_rest::{NewtonOptions, Proof};
 use crate::statics::report::equilibrium::Progress;
 use crate::statics::report::error::StaticsError;
-use crate::statics::report::intersecting::entangled;
+use crate::statics::report::intersecting::intersections_of;
 
 /// Newton steps of a state of bending continuation.
 const CONTINUATION_STEPS: usize = 60;
@@ -85,7 +85,7 @@ impl<'a> Solve<'a> {
             // Crossings of cloth that was sewn through itself may be resolved on a finer level;
             // sewing it there anew gains nothing.
             if level.system.is_intersecting() && (k == 0 || !plan.settings.sew_through) {
-                return Ok(Draped::Tangled(entangled(&plan.pieces[k], &level)));
+                return Ok(Draped::Intersecting(intersections_of(&plan.pieces[k], &level)));
             }
             if let Some(pierced) = self.pierced(k, &level.sheet, &level.x) {
                 return Ok(pierced);

@@ -117,10 +117,10 @@ impl StaticEquilibrium {
                     return settings.judge(scene, Equilibrium { restarts, ..*state });
                 }
                 // There is no finer level to start from.
-                (Ok(Draped::Tangled(entangled)), None) => {
-                    return Err(intersecting_error(scene, gravity(scene).norm(), entangled));
+                (Ok(Draped::Intersecting(intersections)), None) => {
+                    return Err(intersecting_error(scene, gravity(scene).norm(), intersections));
                 }
-                (Ok(Draped::Tangled(entangled)), Some(finer)) => entangled.nodes.max(finer),
+                (Ok(Draped::Intersecting(intersections)), Some(finer)) => intersections.nodes.max(finer),
                 (Ok(Draped::TooCoarse { finer }), _) => finer,
                 // A garment that slides off while it is stiff may stay on with its own bending.
                 (Err(StaticsError::FallsPast(fallen)), _)

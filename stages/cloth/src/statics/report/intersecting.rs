@@ -13,7 +13,7 @@ type Vec3 = Vector3<f64>;
 
 /// The intersections of a level.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Entangled {
+pub(crate) struct Intersections {
     /// Nodes of the level.
     pub(crate) nodes: usize,
     /// Two panels of it, counted from 1.
@@ -25,21 +25,21 @@ pub(crate) struct Entangled {
 }
 
 /// The error of intersections of the finest level that were not resolved.
-pub(crate) fn intersecting_error(scene: &Scene, gravity: f64, entangled: Entangled) -> StaticsError {
-    let Entangled { panels, pairs, at, .. } = entangled;
+pub(crate) fn intersecting_error(scene: &Scene, gravity: f64, intersections: Intersections) -> StaticsError {
+    let Intersections { panels, pairs, at, .. } = intersections;
     let panels = panels.map(|p| words::panel(scene, p));
     StaticsError::Tangled { panels, pairs, at, load: Load::of(scene, gravity) }
 }
 
 /// The intersections of a level.
-pub(crate) fn entangled(pieces: &Pieces, level: &Level<'_>) -> Entangled {
-    let groups = level.system.self_contact.as_ref().map_or_else(Vec::new, |c| c.entangled(&level.x));
+pub(crate) fn intersections_of(pieces: &Pieces, level: &Level<'_>) -> Intersections {
+    let groups = level.system.self_contact.as_ref().map_or_else(Vec::new, |c| c.intersecting_nodes(&level.x));
     let first = groups.first().copied().unwrap_or_default();
     let panel = |node: u32| {
         let vertex = pieces.node.iter().position(|n| *n == node);
         vertex.map_or(0, |v| pieces.panel[v])
     };
-    Entangled {
+    Intersections {
         nodes: level.x.len(),
         panels: [panel(first[0]), panel(first[3])],
         pairs: groups.len().max(1),

@@ -37,7 +37,7 @@ impl SelfContact {
     }
 
     /// The nodes of each crossing and of each merged pair; those of the edge or vertex come first.
-    pub(crate) fn entangled(&self, x: &[Vec3]) -> Vec<[u32; 4]> {
+    pub(crate) fn intersecting_nodes(&self, x: &[Vec3]) -> Vec<[u32; 4]> {
         self.intersections.iter().map(|c| c.nodes).chain(self.merged(x).iter().map(|p| p.nodes)).collect()
     }
 
