@@ -221,7 +221,7 @@ fn wavy() -> (Sheet, Vec<Vec3>, Vec<bool>) {
 }
 
 #[test]
-fn only_what_is_awake_looks_for_others() {
+fn only_active_triangles_seek_pairs() {
     let (sheet, x, active) = wavy();
     let still = vec![Vec3::zeros(); x.len()];
     let tree = ClothTree::new(sheet.triangles(), &x);

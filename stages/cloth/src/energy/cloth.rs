@@ -19,7 +19,7 @@ pub struct Cloth<'a> {
     pub fabrics: &'a [&'a Fabric],
     /// Which fabric each triangle is of.
     pub fabric: &'a dyn Fn(usize) -> usize,
-    /// What yarns must not exceed.
+    /// Strain limit of warp and weft.
     pub limit: Option<StrainLimit>,
     /// Border edges that keep their slope.
     pub clamp: Option<Clamp<'a>>,

@@ -36,7 +36,7 @@ impl Projection {
 /// All results have the same bits for any number of threads. An energy without a second derivative
 /// needs only a value and a gradient.
 pub trait Energy: Send + Sync {
-    /// What it is called in reports.
+    /// Its name in reports.
     fn name(&self) -> &'static str;
 
     /// Energy at `x`, joules.

@@ -35,7 +35,7 @@ use toile_geometry::obj::ObjError;
 /// A scene, checked: every index points at something and every number is finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Flat rest coordinates of every vertex, m; warp along y.
     pub rest: Vec<Vector2<f64>>,
@@ -68,13 +68,13 @@ pub struct Scene {
 /// A piece of cloth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its vertices.
     pub vertices: Range<usize>,
     /// Its triangles.
     pub triangles: Range<usize>,
-    /// What it is made of, if not of the scene's material.
+    /// Its fabric, if not the scene's material.
     pub material: Option<Fabric>,
     /// Coefficient of friction on the body, if not the body's own.
     pub body_friction: Option<f64>,
@@ -86,7 +86,7 @@ pub struct Panel {
 /// A seam: pairs of vertices that are sewn together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seam {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The pairs.
     pub pairs: Vec<[u32; 2]>,
@@ -105,7 +105,7 @@ pub struct Seam {
 /// An elastic band along a path of vertices: a waistband, a cuff.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Band {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The vertices along it; neighbours lie on one panel or are sewn together.
     pub vertices: Vec<u32>,
@@ -129,7 +129,7 @@ pub struct SceneBody {
 /// A span of time with one gravity and one air.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// How long it lasts, s.
     pub seconds: f64,
@@ -147,19 +147,19 @@ pub enum SceneError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The message of the system.
         why: String,
     },
     /// Not JSON, or not of the form.
     #[error("not a garment-scene-1: {why}")]
     Form {
-        /// What the parser said, with line and column.
+        /// The message of the parser, with line and column.
         why: String,
     },
     /// Another format or version.
     #[error("the format is '{found}', not 'garment-scene-1'")]
     Format {
-        /// What the file calls itself.
+        /// The format that the file states.
         found: String,
     },
     /// Two lists that must be equally long.
@@ -193,7 +193,7 @@ pub enum SceneError {
         seam: String,
         /// Which pair.
         pair: usize,
-        /// What is wrong.
+        /// The fault.
         why: &'static str,
     },
     /// A seam with threads has two lines of vertices and no fold.
@@ -219,7 +219,7 @@ pub enum SceneError {
     BandPath {
         /// The band.
         band: String,
-        /// What is wrong, with the place.
+        /// The fault, with its place.
         why: String,
     },
     /// A material that lacks a value.
@@ -243,7 +243,7 @@ pub enum SceneError {
     /// Another direction up.
     #[error("up is '{found}', but in a scene y is up; turn the scene and its body")]
     Up {
-        /// What the file says.
+        /// The direction that the file states.
         found: String,
     },
     /// Two panels of one name.

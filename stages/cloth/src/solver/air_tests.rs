@@ -254,7 +254,7 @@ proptest! {
     /// However the sheet lies and moves, still air takes energy, and the linear step holds as much
     /// as the law.
     #[test]
-    fn air_takes_energy_and_the_grips_add_up_to_the_law(
+    fn air_takes_energy_and_the_drag_tensors_add_up_to_the_law(
         numbers in prop::collection::vec(-3.0..3.0_f64, 24), wind in prop::collection::vec(-20.0..20.0_f64, 3),
     ) {
         let vec = |k: usize| Vec3::new(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]);

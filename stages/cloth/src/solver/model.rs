@@ -85,7 +85,7 @@ impl Model {
     /// Adds the models of a cloth.
     ///
     /// # Errors
-    /// What the models find in a fabric.
+    /// Faults that the models find in a fabric.
     pub fn made_of(mut self, models: Models, cloth: &Cloth<'_>) -> Result<Self, ClothError> {
         // Bending hysteresis is left out of dynamics.
         let energies = models.energies(cloth)?.into_iter().filter(|e| !e.is_hysteretic());
@@ -96,7 +96,7 @@ impl Model {
     /// Adds the membrane alone.
     ///
     /// # Errors
-    /// What it finds in a fabric.
+    /// Faults that the membrane finds in a fabric.
     pub fn with_membrane(mut self, models: Models, cloth: &Cloth<'_>) -> Result<Self, ClothError> {
         self.energies.push(models.membrane(cloth)?);
         Ok(self)

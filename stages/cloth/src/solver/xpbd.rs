@@ -42,8 +42,8 @@ impl Xpbd {
     /// For a sheet of this fabric.
     ///
     /// # Errors
-    /// What [`Fabric::check`] finds; [`ClothError::InvalidParameter`] for a sheet with no stiffness
-    /// at all in some direction.
+    /// Every error of [`Fabric::check`]; [`ClothError::InvalidParameter`] for a sheet with no
+    /// stiffness at all in some direction.
     pub fn new(sheet: &Sheet, fabric: &Fabric, dt: f64, substeps: usize) -> Result<Self, ClothError> {
         let woven = Woven::new(fabric)?;
         let stiffness = woven.linear_stiffness();

@@ -30,7 +30,7 @@ pub struct Response {
 /// A hyperelastic law of a sheet, by `[u.u, v.v, u.v]`, u and v the images of the rest x axis
 /// (weft) and y axis (warp).
 pub trait Law: Clone + Send + Sync + 'static {
-    /// What it is called in reports.
+    /// Its name in reports.
     fn name(&self) -> &'static str;
 
     /// Energy per rest area, J/m².

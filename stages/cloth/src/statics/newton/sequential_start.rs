@@ -47,7 +47,7 @@ pub(crate) fn stack_size(scene: &Scene) -> Option<usize> {
     Some(scene).filter(|s| s.self_collision).map(count_cloths).filter(|n| *n >= MANY)
 }
 
-/// What each cloth is solved with.
+/// The context in which each cloth is solved.
 pub(crate) struct StackStart<'a> {
     /// Orders the elimination.
     pub(crate) layout: &'a [Vec3],

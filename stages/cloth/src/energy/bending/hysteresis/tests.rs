@@ -74,7 +74,7 @@ fn the_couple_is_what_stiffness_makes_of_its_curvature() {
 }
 
 #[test]
-fn a_fold_that_turned_and_was_dragged_along_stays_open_when_it_is_let_go() {
+fn a_fold_that_turned_and_was_dragged_along_stays_open_when_it_is_released() {
     let (mut elastic, uv) = square();
     elastic.0.hold(&folded(&uv, 0.0));
     elastic.0.drag(&folded(&uv, 1.0));

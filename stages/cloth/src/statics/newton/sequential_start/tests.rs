@@ -88,7 +88,7 @@ fn what_hangs_together_by_thread_is_one_cloth() {
 }
 
 #[test]
-fn a_cloth_is_laid_on_what_holds_still() {
+fn a_cloth_comes_to_rest_on_pinned_cloth() {
     with_system(&generate::stack(2, CELLS), |mut system, tree, mut x| {
         let around = StackStart { layout: &x.clone(), tree, options: options(), stop: &|| false };
         let active = |sheet: usize| -> Vec<bool> { (0..2 * NODES).map(|i| i / NODES == sheet).collect() };
@@ -152,7 +152,7 @@ fn six_sheets_come_to_rest_in_order() {
 }
 
 #[test]
-fn a_pile_that_is_told_to_stop_says_so() {
+fn a_stack_that_is_stopped_returns_so() {
     let mut steps = 0;
     let stopped = StaticEquilibrium::default().solve(&generate::stack(6, CELLS), &mut |_| {
         steps += 1;

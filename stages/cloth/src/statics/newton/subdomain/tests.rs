@@ -79,7 +79,7 @@ fn stiffness(system: &mut System<'_>, x: &[Vec3], way: &[Vec3]) -> Vec<Vec3> {
 }
 
 #[test]
-fn awake_nodes_are_as_stiff_as_in_the_whole() {
+fn active_nodes_are_as_stiff_as_in_the_whole() {
     with_subdomain(|mut system, x, active| {
         let way = |i: usize| Vec3::new((3 * i) as f64, (5 * i) as f64, (7 * i) as f64).map(f64::sin);
         let ways: Vec<Vec3> = (0..x.len()).map(|i| if active[i] { way(i) } else { Vec3::zeros() }).collect();
@@ -125,7 +125,7 @@ fn what_a_part_found_comes_back_to_its_nodes_alone() {
 }
 
 #[test]
-fn a_grip_whose_pair_has_gone_is_left_out() {
+fn friction_whose_pair_has_gone_is_left_out() {
     with_subdomain(|mut system, x, active| {
         let self_contact = system.self_contact.as_mut().unwrap();
         self_contact.friction = vec![0.3; x.len()];

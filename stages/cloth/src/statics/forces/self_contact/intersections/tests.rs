@@ -16,7 +16,7 @@ fn vertex_over(height: f64) -> (SelfContact, [Vec3; 4]) {
 }
 
 #[test]
-fn cloth_that_lies_in_cloth_is_tangled_until_it_is_apart() {
+fn merged_cloth_is_intersecting_until_it_is_apart() {
     for (height, wanted) in [(0.0, true), (1.9e-7, true), (1.9e-5, true), (2.1e-5, false), (0.3e-3, false)] {
         let (mut self_contact, x) = vertex_over(height);
         self_contact.resolve_intersections(&[], &x);

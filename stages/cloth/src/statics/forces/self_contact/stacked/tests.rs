@@ -48,7 +48,7 @@ fn contacts_of_edges_fade_towards_an_end() {
 }
 
 #[test]
-fn in_a_pile_contacts_of_edges_fade_as_they_come_to_lie_along_each_other() {
+fn in_a_stack_contacts_of_edges_fade_as_they_become_parallel() {
     for (sine, wanted) in [(0.5, 1.0), (0.1, 1.0), (0.05, 0.25), (0.01, 0.01)] {
         assert!((share(0.5, f64::asin(sine), true) - wanted).abs() < 1e-9, "{sine}");
         assert!((share(0.5, f64::asin(sine), false) - 1.0).abs() < 1e-12, "{sine}");
@@ -69,7 +69,7 @@ fn count(self_contact: &mut SelfContact, beyond: f64) -> usize {
 }
 
 #[test]
-fn while_a_pile_is_proved_what_has_touched_counts_as_long_as_it_is_near() {
+fn in_a_stack_a_held_pair_counts_while_it_is_near() {
     let pair = Pair { kind: Kind::VertexTriangle, nodes: [0, 1, 2, 3] };
     let mut stack = self_contact(pair, true);
     assert_eq!([count(&mut stack, -1e-5), count(&mut stack, 1e-5)], [1, 0]);
