@@ -37,10 +37,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let states: usize = args.get(1).map_or(Ok(120), |n| n.parse())?;
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-    let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
+    let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
     let state = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(()))?;
-    let (cloth, rub) = (scene.material.clone(), wearer.map_or(0.0, |w| w.friction));
-    let mut live = Live::new(StaticEquilibrium::default(), scene.clone(), wearer, &state)?;
+    let (cloth, rub) = (scene.material.clone(), collider.map_or(0.0, |w| w.friction));
+    let mut live = Live::new(StaticEquilibrium::default(), scene.clone(), collider, &state)?;
     let (mut slowest, mut residual, mut speed) = (0.0f64, 0.0f64, 0.0f64);
     let mut change = 0.0;
     let clock = Instant::now();

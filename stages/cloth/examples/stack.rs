@@ -19,10 +19,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::env::args().skip(1).partition(|a| a.starts_with("--"));
     let [sheets, cells, seconds, file @ ..] = &words[..] else { return Err(USAGE.into()) };
     let scene = generate::stack(sheets.parse()?, cells.parse()?);
-    let rest =
+    let settings =
         StaticEquilibrium { budget: Duration::from_secs(seconds.parse()?), ..StaticEquilibrium::default() };
     let (clock, trace, mut steps) = (Instant::now(), options.iter().any(|o| o == "--trace"), 0);
-    let solved = rest.solve(&scene, &mut |level| {
+    let solved = settings.solve(&scene, &mut |level| {
         steps += 1;
         if trace {
             tell(clock, level);

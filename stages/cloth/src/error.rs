@@ -1,5 +1,4 @@
-//! What the engine refuses, each with the place and the value, so that a caller can point at the
-//! culprit.
+//! Errors of the engine, each with the place and the value at fault.
 
 use thiserror::Error;
 
@@ -45,9 +44,9 @@ pub enum ClothError {
     InvalidParameter {
         /// The parameter.
         name: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
-        /// What is allowed, in words.
+        /// The allowed range, in words.
         range: &'static str,
     },
     /// An edge of more than two triangles, or two triangles that disagree on which side is up.
@@ -57,7 +56,7 @@ pub enum ClothError {
         a: usize,
         /// The higher vertex.
         b: usize,
-        /// What is wrong with it.
+        /// The fault.
         why: &'static str,
     },
     /// A triangle that is listed twice.
@@ -76,7 +75,7 @@ pub enum ClothError {
     /// An index that points past the end.
     #[error("{what} {index} refers to vertex {vertex}, but there are {count}")]
     VertexOutOfRange {
-        /// What refers.
+        /// The kind of element that refers to it.
         what: &'static str,
         /// Which of them.
         index: usize,
@@ -109,7 +108,7 @@ pub enum ClothError {
         index: usize,
         /// Greatest principal engineering strain.
         strain: f64,
-        /// What was allowed.
+        /// The allowed value.
         limit: f64,
     },
     /// A solver that ran out of iterations before its residual was small.
@@ -125,7 +124,7 @@ pub enum ClothError {
     /// A matrix that could not be factored even with the largest shift.
     #[error("the stiffness matrix could not be factored: {why}")]
     Factorization {
-        /// What the factorization said.
+        /// The message of the factorization.
         why: String,
     },
     /// The caller asked to stop.

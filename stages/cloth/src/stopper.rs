@@ -1,16 +1,16 @@
-//! Whether to stop, asked inside of steps.
+//! Lets a caller stop a solver within steps.
 
 use crate::error::ClothError;
 use std::fmt;
 use std::sync::Arc;
 
-/// Says whether a caller wants a solver to stop. It is asked between the parts of a step, so that a
-/// long step ends soon; without a caller's word it never stops.
+/// Tells whether a caller wants a solver to stop. Solvers ask it between the parts of a step, so
+/// that a long step ends soon. The default never stops.
 #[derive(Clone, Default)]
 pub struct Stopper(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
 
 impl Stopper {
-    /// Stops where `asks` says so.
+    /// Stops when `asks` returns true.
     pub fn when(asks: impl Fn() -> bool + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(asks)))
     }

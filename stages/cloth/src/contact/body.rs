@@ -11,31 +11,31 @@ type Vec3 = Vector3<f64>;
 /// A closed, static triangle mesh whose triangles face outwards.
 #[derive(Debug, Clone)]
 pub struct Body {
-    skin: SignedDistance,
+    surface: SignedDistance,
     sharp: Option<Arc<Sharp>>,
-    /// Made when they are first asked for.
+    /// Made on first use.
     facets: OnceLock<Option<Facets>>,
 }
 
 impl Body {
-    /// Builds the tree. Triangles must refer to vertices that exist; an empty body is far from
+    /// Builds the tree. Triangles must refer to existing vertices. An empty body is far from
     /// everything.
     #[must_use]
     pub fn new(vertices: Vec<Vec3>, triangles: &[[u32; 3]]) -> Self {
         let sharp = Sharp::of(&vertices, triangles).map(Arc::new);
-        Self { skin: SignedDistance::new(vertices, triangles.to_vec()), sharp, facets: OnceLock::new() }
+        Self { surface: SignedDistance::new(vertices, triangles.to_vec()), sharp, facets: OnceLock::new() }
     }
 
     /// Its vertices.
     #[must_use]
     pub fn vertices(&self) -> &[Vec3] {
-        self.skin.vertices()
+        self.surface.vertices()
     }
 
     /// Its triangles.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        self.skin.triangles()
+        self.surface.triangles()
     }
 
     /// Its sharp edges and corners, if it has any.
@@ -44,22 +44,23 @@ impl Body {
         self.sharp.clone()
     }
 
-    /// Its triangles, for cloth that may pass through them; none of an empty body.
+    /// Its triangles, for crossings with cloth; `None` for an empty body.
     #[must_use]
     pub fn facets(&self) -> Option<&Facets> {
         self.facets.get_or_init(|| Facets::of(self.vertices(), self.triangles())).as_ref()
     }
 
-    /// The surface nearest to `p`, if it is no farther than `within`.
+    /// The nearest place of the surface to `p`, if it is no farther than `within`.
     #[must_use]
     pub fn nearest(&self, p: &Vec3, within: f64) -> Option<Nearest> {
-        self.skin.nearest(p, within)
+        self.surface.nearest(p, within)
     }
 
-    /// The move from `p` by `by`, ended `gap` outside the surface where it would enter the body.
+    /// The move `by` from `p`, shortened so that it ends `gap` outside the surface where it would
+    /// enter the body.
     ///
-    /// The way is walked in steps no longer than the distance from the surface, so nothing is
-    /// jumped over. A point that starts inside may move as it likes.
+    /// Method: sphere tracing, in steps no longer than the distance from the surface, so that
+    /// nothing is jumped over. A point that starts inside moves freely.
     #[must_use]
     pub fn guard(&self, p: &Vec3, by: &Vec3, gap: f64) -> Vec3 {
         let length = by.norm();

@@ -1,4 +1,4 @@
-//! What friction remembers of a contact of cloth with cloth.
+//! The friction of one contact of cloth with cloth, kept from step to step.
 
 use nalgebra::Vector3;
 
@@ -9,15 +9,15 @@ type Vec3 = Vector3<f64>;
 pub struct FrictionContact {
     /// Nodes.
     pub nodes: [u32; 4],
-    /// Weights of the nodes in the way between the features.
+    /// Weights of the nodes in the vector between the features.
     pub weights: [f64; 4],
-    /// Unit direction from the second feature to the first.
+    /// Unit vector from the second feature to the first.
     pub normal: Vec3,
-    /// Where friction holds the way between the features, m.
+    /// Anchor: the vector between the features that friction holds, m.
     pub anchor: Vec3,
-    /// How far the features had slid at the step's start, m.
+    /// Tangential displacement at the start of the step, m.
     pub slid: Vec3,
-    /// The force that limits friction: the mean over the last steps, N.
+    /// The normal force that limits friction, a mean over the last steps, N.
     pub load: f64,
     /// Coefficient of friction.
     pub friction: f64,

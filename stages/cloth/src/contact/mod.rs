@@ -1,12 +1,12 @@
-//! What cloth touches: the body and itself.
+//! Contact of cloth with the body and with itself.
 
 pub mod body;
+pub mod collision_surface;
 pub mod friction;
-pub mod give_way;
-pub mod limit;
 pub mod past;
-pub mod skin;
+pub mod response;
 pub(crate) mod start;
+pub mod step_limit;
 
 #[cfg(test)]
 mod tests;

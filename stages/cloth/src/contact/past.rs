@@ -1,27 +1,26 @@
-//! Cloth that falls past the body.
+//! Finds cloth that has fallen past the body.
 //!
-//! A piece of cloth, all that hangs together, is past the body once its highest point lies lower
-//! along gravity than the body's lowest, and lower than all cloth that a pin holds or that is not
-//! past the body itself. From then on nothing is left that could catch it: it falls for ever, and
-//! there is no need to follow it. Cost: O(n), a comparison a node while all of them are above the
-//! body's lowest point.
+//! A connected piece of cloth is past the body once its highest point lies below the lowest point
+//! of the body, and below all cloth that is pinned or not past the body. Nothing can stop it then,
+//! so the solver ends. Cost: O(n), one comparison per node while all nodes are above the lowest
+//! point of the body. Limit: cloth that slides off is found only once it is wholly below.
 
-use super::skin::CollisionSurface;
+use super::collision_surface::CollisionSurface;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Marks a node that belongs to no piece: no triangle has it.
+/// The piece of a node without triangles.
 pub const NO_PIECE: u32 = u32::MAX;
 
-/// Edges of a mesh in the narrower side of the body, from which on a finer mesh falls as this one
-/// does: what would catch the cloth is no finer than it is.
+/// Least number of edges of the mesh in the narrower side of the body, at which a finer mesh would
+/// fall, too.
 const EDGES_ACROSS: f64 = 6.0;
 
-/// The box around a body, upright along gravity.
+/// The bounding box of a body, with one axis along gravity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyBox {
-    /// Up, and two directions across it.
+    /// The upward direction and two directions across it.
     axes: [Vec3; 3],
     low: [f64; 3],
     high: [f64; 3],
@@ -30,22 +29,22 @@ pub struct BodyBox {
 /// Cloth that has fallen past the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fallen {
-    /// Its panels, as a list for people.
+    /// Its panels, as a list for messages.
     pub cloth: String,
     /// Where it started.
     pub start: Start,
     /// How tall the body is, m.
     pub body: f64,
-    /// Whether no finer mesh would be caught.
+    /// Whether a finer mesh would fall past, too.
     pub is_certain: bool,
 }
 
-/// Where cloth started that fell past the body.
+/// Where cloth that fell past the body started.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Start {
-    /// Beside it: the level way from the body's middle to the cloth's, m.
+    /// Beside it: the horizontal distance of the middle of the cloth from that of the body, m.
     Beside(Vec3),
-    /// Wholly below it, so far, m.
+    /// Wholly below it, by this distance, m.
     Below(f64),
     /// Around or above it.
     Around,
@@ -81,15 +80,15 @@ impl std::fmt::Display for Fallen {
 }
 
 impl BodyBox {
-    /// The box of a body; nothing where there is no body or no weight.
-    pub fn of(skin: &dyn CollisionSurface, gravity: &Vec3) -> Option<Self> {
+    /// The box of a body; `None` where there is no body or no gravity.
+    pub fn of(surface: &dyn CollisionSurface, gravity: &Vec3) -> Option<Self> {
         let up = -gravity.try_normalize(0.0)?;
         let least = up.iamin();
         let first = up.cross(&Vec3::ith(least, 1.0)).normalize();
         let axes = [up, first, up.cross(&first)];
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
         for (k, axis) in axes.iter().enumerate() {
-            (low[k], high[k]) = (-skin.reach(&-axis)?, skin.reach(axis)?);
+            (low[k], high[k]) = (-surface.reach(&-axis)?, surface.reach(axis)?);
         }
         Some(Self { axes, low, high })
     }
@@ -107,8 +106,8 @@ impl BodyBox {
     }
 
     /// The height of the highest point of the body under cloth with its vertices at `x`, by a
-    /// raster of so many ways a side over it: `meets` says at what height a way straight down from
-    /// a point above the body meets it. Nothing where none does.
+    /// raster of vertical rays. `meets` returns the height at which a ray down from a point above
+    /// the body meets it. `None` where no ray does.
     pub fn highest_under(
         &self,
         x: &[Vec3],
@@ -133,15 +132,16 @@ impl BodyBox {
         (0..ways * ways).filter_map(|i| meets(&from(i))).reduce(f64::max)
     }
 
-    /// Whether cloth with edges of that length, m, falls past the body only where finer cloth does.
+    /// Whether cloth with edges of that length, m, falls past the body only where finer cloth does,
+    /// too.
     #[must_use]
     pub fn resolves(&self, edge: f64) -> bool {
         let across = [1, 2].map(|k| self.high[k] - self.low[k]);
         edge * EDGES_ACROSS <= across[0].min(across[1])
     }
 
-    /// Which pieces are past the body, by their numbers; empty where none is. `piece` is the piece
-    /// of each node, or [`NO_PIECE`], and `held` says which nodes a pin holds.
+    /// Whether each piece is past the body; empty where none is. `piece` is the piece of each node,
+    /// or [`NO_PIECE`], and `held` tells which nodes are pinned.
     #[must_use]
     pub fn past(&self, x: &[Vec3], piece: &[u32], held: &[bool]) -> Vec<bool> {
         let height = |p: &Vec3| p.dot(&self.axes[0]);
@@ -171,7 +171,7 @@ impl BodyBox {
         if past.contains(&true) { past } else { Vec::new() }
     }
 
-    /// Where cloth starts that has its vertices at `x`.
+    /// Where cloth with its vertices at `x` starts.
     #[must_use]
     pub fn start(&self, x: &[Vec3]) -> Start {
         let mut gaps = [0.0; 3];
@@ -193,11 +193,11 @@ impl BodyBox {
     }
 }
 
-/// The panels of cloth that has fallen, as a list for people: each with its name, vertices and how
-/// many of these have fallen.
+/// The panels of fallen cloth, as a list for messages: each with its name, how many vertices have
+/// fallen, and how many there are.
 #[must_use]
 pub fn list(panels: &[(&str, usize, usize)]) -> String {
-    /// So many are named.
+    /// Panels that are named at most.
     const NAMED: usize = 3;
     let name = |&(name, fallen, all): &(&str, usize, usize)| match fallen == all {
         true => format!("'{name}'"),

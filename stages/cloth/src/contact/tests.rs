@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 use super::body::Body;
-use super::limit::{hold_apart, limit};
+use super::step_limit::{limit_step, limit_with_search};
 use crate::mesh::Sheet;
 use crate::scene::generate;
 use nalgebra::{Vector2, Vector3};
@@ -96,7 +96,7 @@ proptest! {
         let tree = ClothTree::new(sheet.triangles(), &x);
         prop_assume!(tree.crossings(&x).is_empty());
         let pairs = tree.pairs(&x, &moves, 1e-3);
-        limit(&x, &mut moves, &pairs);
+        limit_step(&x, &mut moves, &pairs);
         let end: Vec<Vec3> = x.iter().zip(&moves).map(|(p, m)| p + m).collect();
         prop_assert_eq!(tree.crossings(&end), vec![]);
     }
@@ -194,7 +194,7 @@ fn what_falls_together_does_not_pass_what_is_held_back() {
     let first = seek(&moves);
     // The upper two never near each other on their way: no pair of theirs is found at first.
     assert!(first.iter().all(|p| p.nodes.iter().any(|&v| (v as usize) < n)));
-    hold_apart(&x, &mut moves, first, |_| true, |moves| Some(seek(moves)));
+    limit_with_search(&x, &mut moves, first, |_| true, |moves| Some(seek(moves)));
     let height = |v: usize| x[v].y + moves[v].y;
     for v in 0..n {
         assert!(
@@ -207,7 +207,7 @@ fn what_falls_together_does_not_pass_what_is_held_back() {
     assert!(moves[n].y < -0.005);
 }
 
-/// Four wavy sheets over each other, a millimetre apart; the third is awake.
+/// Four wavy sheets over each other, a millimetre apart; the third is active.
 fn wavy() -> (Sheet, Vec<Vec3>, Vec<bool>) {
     let scene = generate::stack(4, 5);
     let sheet = Sheet::flat(&scene.rest, &scene.triangles, 0.15).unwrap();
@@ -216,33 +216,33 @@ fn wavy() -> (Sheet, Vec<Vec3>, Vec<bool>) {
         Vec3::new(p.x, 1e-3 * layer(k) as f64 + 0.05 * (9.0 * p.x).sin() + 0.03 * (7.0 * p.z).cos(), p.z)
     };
     let x: Vec<Vec3> = scene.positions.iter().enumerate().map(at).collect();
-    let awake = (0..x.len()).map(|k| layer(k) == 2).collect();
-    (sheet, x, awake)
+    let active = (0..x.len()).map(|k| layer(k) == 2).collect();
+    (sheet, x, active)
 }
 
 #[test]
-fn only_what_is_awake_looks_for_others() {
-    let (sheet, x, awake) = wavy();
+fn only_active_triangles_seek_pairs() {
+    let (sheet, x, active) = wavy();
     let still = vec![Vec3::zeros(); x.len()];
     let tree = ClothTree::new(sheet.triangles(), &x);
-    let wakes = |p: &Pair| p.nodes.iter().any(|&i| awake[i as usize]);
-    let all: Vec<Pair> = tree.pairs(&x, &still, 5e-3).into_iter().filter(wakes).collect();
-    let some = tree.with_active(&awake).pairs(&x, &still, 5e-3);
-    assert!(all.len() > 500 && some.iter().all(wakes));
+    let has_active = |p: &Pair| p.nodes.iter().any(|&i| active[i as usize]);
+    let all: Vec<Pair> = tree.pairs(&x, &still, 5e-3).into_iter().filter(has_active).collect();
+    let some = tree.with_active(&active).pairs(&x, &still, 5e-3);
+    assert!(all.len() > 500 && some.iter().all(has_active));
     assert_eq!(all, some);
 }
 
 #[test]
 fn a_part_of_the_tree_finds_what_the_whole_finds_about_it() {
-    let (sheet, x, awake) = wavy();
+    let (sheet, x, active) = wavy();
     let still = vec![Vec3::zeros(); x.len()];
-    let tree = ClothTree::new(sheet.triangles(), &x).with_active(&awake);
+    let tree = ClothTree::new(sheet.triangles(), &x).with_active(&active);
     let known = tree.about(&x, 5e-3);
     let nodes: Vec<u32> = (0..x.len() as u32).filter(|&i| known[i as usize]).collect();
     let mut index = vec![u32::MAX; x.len()];
     nodes.iter().enumerate().for_each(|(k, &i)| index[i as usize] = k as u32);
     let pick = |of: &[Vec3]| -> Vec<Vec3> { nodes.iter().map(|&i| of[i as usize]).collect() };
-    let own: Vec<bool> = nodes.iter().map(|&i| awake[i as usize]).collect();
+    let own: Vec<bool> = nodes.iter().map(|&i| active[i as usize]).collect();
     let part = tree.part(&nodes, &index, &pick(&x)).with_active(&own);
     let sides = |pairs: Vec<Pair>, name: &dyn Fn(u32) -> u32| {
         let side = |n: &[u32]| {

@@ -6,12 +6,12 @@
 //! cloth in wind by triangles: Ling, Damodaran, Gay (1996); Keckeisen, Kimmerle, Thomaszewski,
 //! Wacker (2004).
 //!
-//! Solvers take one linear step of it: the triangle's velocity before the step says how firmly the
-//! air grips it ([`AirDrag::grips`]), and each corner is held by a third of that at its velocity
-//! after the step. The sum is the law, a state that lasts keeps it exactly, and so does a sheet
-//! that the wind carries off face on (Kahan, 1993: `v v'` for `v²`). The grip is never negative, so
-//! still air only takes energy, however long the step. Cost: a few flops a triangle and step. Left
-//! out: lift, the wake of other cloth, the mass of the air that moves along.
+//! Solvers make one linear step of it (Kahan, 1993: `v v'` for `v²`): the velocity of a triangle
+//! before the step gives a drag tensor ([`AirDrag::drag_tensors`]), a third of which acts on the
+//! velocity of each corner after the step. The sum is the law; it is exact in a steady state, and
+//! for a sheet that the wind carries off face on. The tensor is positive semi-definite, so still
+//! air only takes energy, for any step. Cost: a few flops a triangle and step. Limits: no lift, no
+//! wake of other cloth, no added mass of air.
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -21,14 +21,14 @@ use super::potential::{Energy, Projection};
 use crate::error::{ClothError, check_parameter};
 use crate::linear::Vec3;
 
-/// Denser than water no fluid is that cloth moves in, kg/m³.
+/// Greatest density of the fluid, that of water, kg/m³.
 const DENSEST: f64 = 2000.0;
 /// Greatest coefficient of drag.
 const GREATEST_COEFFICIENT: f64 = 100.0;
 /// Strongest wind, m/s.
 const STRONGEST: f64 = 1000.0;
 
-/// What the sheet moves in.
+/// The air around a sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
     /// kg/m³: 1.2 for air at 20 °C; 0 for none.
@@ -60,7 +60,7 @@ impl Air {
         Self { wind: Vec3::zeros(), ..self }
     }
 
-    /// Whether it does anything at all.
+    /// Whether it acts at all.
     #[must_use]
     pub fn acts(&self) -> bool {
         self.density > 0.0 && (self.normal > 0.0 || self.tangential > 0.0)
@@ -87,7 +87,7 @@ impl Air {
         check_parameter("wind speed", speed, |s| s <= STRONGEST, "at most 1000 m/s")
     }
 
-    /// What solvers of rest ask: still air does not change where cloth rests, wind does, and has no
+    /// For static solvers: still air does not change the equilibrium; wind does, and has no
     /// potential.
     ///
     /// # Errors
@@ -120,23 +120,23 @@ impl AirDrag {
         let mut forces = vec![Vec3::zeros(); x.len()];
         for t in &self.triangles {
             let (corners, slip) = (t.map(|k| x[k as usize]), self.slip(t, v));
-            let third = grip(&self.air, &corners, &slip) * slip / 3.0;
+            let third = drag_tensor(&self.air, &corners, &slip) * slip / 3.0;
             t.iter().for_each(|&k| forces[k as usize] += third);
         }
         forces
     }
 
-    /// How firmly the air holds each vertex, N s/m: the force on it is this times (wind - its
-    /// velocity). Symmetric, never negative.
+    /// The drag tensor of each vertex, N s/m: the force on it is this times (wind - its velocity).
+    /// Symmetric and positive semi-definite.
     #[must_use]
-    pub fn grips(&self, x: &[Vec3], v: &[Vec3]) -> Vec<Matrix3<f64>> {
-        let of = |t: &[u32; 3]| grip(&self.air, &t.map(|k| x[k as usize]), &self.slip(t, v)) / 3.0;
+    pub fn drag_tensors(&self, x: &[Vec3], v: &[Vec3]) -> Vec<Matrix3<f64>> {
+        let of = |t: &[u32; 3]| drag_tensor(&self.air, &t.map(|k| x[k as usize]), &self.slip(t, v)) / 3.0;
         let thirds: Vec<Matrix3<f64>> = self.triangles.par_iter().with_min_len(256).map(of).collect();
-        let mut grips = vec![Matrix3::zeros(); x.len()];
+        let mut drag_tensors = vec![Matrix3::zeros(); x.len()];
         for (t, third) in self.triangles.iter().zip(&thirds) {
-            t.iter().for_each(|&k| grips[k as usize] += third);
+            t.iter().for_each(|&k| drag_tensors[k as usize] += third);
         }
-        grips
+        drag_tensors
     }
 
     /// Wind less the triangle's velocity, m/s.
@@ -145,8 +145,8 @@ impl AirDrag {
     }
 }
 
-/// The tensor that takes `slip` to the force on a triangle, N s/m.
-fn grip(air: &Air, corners: &[Vec3; 3], slip: &Vec3) -> Matrix3<f64> {
+/// The drag tensor of a triangle: the force on it is this times `slip`, N s/m.
+fn drag_tensor(air: &Air, corners: &[Vec3; 3], slip: &Vec3) -> Matrix3<f64> {
     let cross = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
     let twice = cross.norm();
     if twice <= 0.0 || !twice.is_finite() {
@@ -160,28 +160,28 @@ fn grip(air: &Air, corners: &[Vec3; 3], slip: &Vec3) -> Matrix3<f64> {
     Matrix3::identity() * b + n * n.transpose() * (a - b)
 }
 
-/// How a free vertex of mass `m` (kg) answers an impulse in a step of `h` (s) while the air grips
-/// it, 1/kg.
+/// The change of velocity of a free vertex of mass `m` (kg) per impulse in a step of `h` (s) in
+/// air, 1/kg.
 #[must_use]
-pub fn mobility(m: f64, grip: &Matrix3<f64>, h: f64) -> Matrix3<f64> {
-    let heavy = Matrix3::identity() * m + grip * h;
+pub fn mobility(m: f64, drag: &Matrix3<f64>, h: f64) -> Matrix3<f64> {
+    let heavy = Matrix3::identity() * m + drag * h;
     heavy.try_inverse().unwrap_or_else(|| Matrix3::identity() / m)
 }
 
 /// The velocity of such a vertex after the step, where it would be `v` without air, m/s.
 #[must_use]
-pub fn carried(v: &Vec3, wind: &Vec3, mobility: &Matrix3<f64>, grip: &Matrix3<f64>, h: f64) -> Vec3 {
-    v + mobility * (grip * (wind - v)) * h
+pub fn carried(v: &Vec3, wind: &Vec3, mobility: &Matrix3<f64>, drag: &Matrix3<f64>, h: f64) -> Vec3 {
+    v + mobility * (drag * (wind - v)) * h
 }
 
-/// One step of the air's grip as an energy, for solvers that minimise: `d B d / 2h - d B w`, d the
-/// way since the start.
+/// One step of drag as an energy, for solvers that minimise: `d B d / 2h - d B w`, with the drag
+/// tensor B and the move d since the start.
 #[derive(Debug, Clone)]
 pub struct AirStep<'a> {
     /// Where the step starts.
     pub start: &'a [Vec3],
-    /// [`AirDrag::grips`] there.
-    pub grips: Vec<Matrix3<f64>>,
+    /// [`AirDrag::drag_tensors`] there.
+    pub drag_tensors: Vec<Matrix3<f64>>,
     /// m/s.
     pub wind: Vec3,
     /// Length of the step, s.
@@ -198,16 +198,16 @@ impl Energy for AirStep<'_> {
             let d = x[v] - self.start[v];
             d.dot(&(b * (d * (0.5 / self.dt) - self.wind)))
         };
-        self.grips.iter().enumerate().map(term).sum()
+        self.drag_tensors.iter().enumerate().map(term).sum()
     }
 
     fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]) {
-        for (v, b) in self.grips.iter().enumerate() {
+        for (v, b) in self.drag_tensors.iter().enumerate() {
             gradient[v] += b * ((x[v] - self.start[v]) / self.dt - self.wind);
         }
     }
 
     fn add_matrix(&self, _: &[Vec3], _: Projection, _: &Places, values: &mut [Matrix3<f64>]) {
-        values.iter_mut().zip(&self.grips).for_each(|(v, b)| *v += b / self.dt);
+        values.iter_mut().zip(&self.drag_tensors).for_each(|(v, b)| *v += b / self.dt);
     }
 }

@@ -19,13 +19,13 @@ pub struct Cloth<'a> {
     pub fabrics: &'a [&'a Fabric],
     /// Which fabric each triangle is of.
     pub fabric: &'a dyn Fn(usize) -> usize,
-    /// What yarns must not exceed.
+    /// Strain limit of warp and weft.
     pub limit: Option<StrainLimit>,
     /// Border edges that keep their slope.
     pub clamp: Option<Clamp<'a>>,
-    /// Nodes that stay: the border is not free there. Empty where that does not matter.
+    /// Pinned nodes, at which the border is not free. Empty where that does not matter.
     pub fixed: &'a [bool],
-    /// What its hinges are, once somebody has asked.
+    /// The calibration of its hinges, made on first use.
     pub(crate) calibration: OnceCell<Calibration>,
 }
 
@@ -58,7 +58,7 @@ impl<'a> Cloth<'a> {
         Self { clamp: clamp.into(), ..self }
     }
 
-    /// What hinges on this mesh are, against the sheet that they stand for.
+    /// The calibration of hinges on this mesh.
     pub(crate) fn calibration(&self) -> &Calibration {
         self.calibration.get_or_init(|| Calibration::of(self.cut))
     }
@@ -87,7 +87,7 @@ impl<'a> Cloth<'a> {
         self.clamp.filter(|c| (c.chosen)(a) && (c.chosen)(b)).map(|c| (c.outward)(a))
     }
 
-    /// Whether nothing of it resists bending.
+    /// Whether it has no bending rigidity.
     pub(super) fn is_limp(&self) -> bool {
         self.fabrics.iter().all(|f| Rigidity::of(f).is_zero())
     }

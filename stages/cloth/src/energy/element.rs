@@ -15,13 +15,13 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::any::Any;
 
-/// Elements that one sum adds up.
+/// Elements per partial sum.
 const CHUNK: usize = 512;
 
-/// Elements of one task: to wake a thread takes as long as some thousand.
+/// Elements per parallel task: starting a thread takes as long as some thousand elements.
 const TASK: usize = 2048;
 
-/// Blocks that one task sums.
+/// Blocks per parallel task.
 const BLOCKS: usize = 2048;
 
 /// Block `[i][j]`, `j >= i`, is the second derivative by nodes i and j.
@@ -39,11 +39,11 @@ pub fn add_block_of<const N: usize>(blocks: &Blocks<N>, row: usize, column: usiz
 
 /// A family of equal elements with `N` nodes each.
 pub trait Element<const N: usize>: Clone + Send + Sync + 'static {
-    /// What the blocks of one element's second derivative are made of: the [`Blocks`] themselves,
-    /// or fewer numbers.
+    /// What the blocks of the second derivative of one element are computed from: the [`Blocks`]
+    /// themselves, or fewer numbers.
     type State: Send + Sync;
 
-    /// What it is called in reports.
+    /// Its name in reports.
     fn name(&self) -> &'static str;
 
     /// How many elements there are.
@@ -58,17 +58,17 @@ pub trait Element<const N: usize>: Clone + Send + Sync + 'static {
     /// Its derivative by each node.
     fn gradient(&self, e: usize, x: &[Vec3; N]) -> [Vec3; N];
 
-    /// What its second derivative at `x` is made of.
+    /// What its second derivative at `x` is computed from.
     fn state(&self, e: usize, x: &[Vec3; N], form: Projection) -> Self::State;
 
     /// Adds its block by the nodes `row` and `column`.
     fn add_block(&self, e: usize, state: &Self::State, row: usize, column: usize, sum: &mut Matrix3<f64>);
 
-    /// These of its elements, with other numbers for their nodes.
+    /// Some of its elements, with their nodes renumbered.
     #[must_use]
     fn part(&self, elements: &[usize], subset: &Subset) -> Self;
 
-    /// Whether there is anything to add: no energy, no force, no matrix otherwise.
+    /// Whether it acts at all; otherwise it has no energy, force or matrix.
     fn acts(&self) -> bool {
         true
     }
@@ -78,7 +78,7 @@ pub trait Element<const N: usize>: Clone + Send + Sync + 'static {
         true
     }
 
-    /// Whether that is the same everywhere.
+    /// Whether its second derivative is constant.
     fn is_constant(&self) -> bool {
         false
     }
@@ -89,8 +89,8 @@ pub trait Element<const N: usize>: Clone + Send + Sync + 'static {
     /// See [`Resistance::predict`].
     fn predict(&mut self, _x: &[Vec3], _moves: &[Vec3]) {}
 
-    /// Takes over what a part of these elements has learnt.
-    fn learn(&mut self, _elements: &[usize], _part: &Self) {}
+    /// Takes over the history of a copy of some of these elements.
+    fn merge(&mut self, _elements: &[usize], _part: &Self) {}
 
     /// See [`Resistance::is_hysteretic`].
     fn is_hysteretic(&self) -> bool {
@@ -112,7 +112,7 @@ pub trait Element<const N: usize>: Clone + Send + Sync + 'static {
     fn drag(&mut self, _x: &[Vec3]) {}
 }
 
-/// Elements seen as one [`Energy`].
+/// Elements as one [`Energy`].
 #[derive(Debug, Clone)]
 pub struct Assembled<const N: usize, E>(pub E);
 
@@ -130,7 +130,7 @@ impl<const N: usize, E: Element<N>> Assembled<N, E> {
         (0..count).into_par_iter().with_min_len(TASK).map(f).collect()
     }
 
-    /// The elements that an active node is in.
+    /// The elements with an active node.
     fn touched(&self, subset: &Subset) -> Vec<usize> {
         (0..self.0.count()).filter(|&e| subset.touches(&self.0.nodes(e))).collect()
     }
@@ -211,10 +211,10 @@ impl<const N: usize, E: Element<N>> Resistance for Assembled<N, E> {
         Box::new(Self(self.0.part(&self.touched(subset), subset)))
     }
 
-    fn learn(&mut self, subset: &Subset, part: &dyn Resistance) {
+    fn merge(&mut self, subset: &Subset, part: &dyn Resistance) {
         let touched = self.touched(subset);
         if let Some(Self(part)) = part.as_any().downcast_ref::<Self>() {
-            self.0.learn(&touched, part);
+            self.0.merge(&touched, part);
         }
     }
 

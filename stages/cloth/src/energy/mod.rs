@@ -7,8 +7,8 @@
 //! | `band` | elastic bands |
 //! | `gravity`, `load`, `air` | weight, dead loads, one step of the air's drag |
 //!
-//! Contact with the body and of cloth with cloth, friction and seams that pull depend on the
-//! solver's state and live beside it (`rest`).
+//! Contact, friction and seam closing forces depend on the state of the solver and are in
+//! `statics/forces`.
 
 mod air;
 mod band;

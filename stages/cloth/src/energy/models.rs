@@ -8,7 +8,7 @@ use super::potential::Resistance;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 
-/// What a sheet resists in its plane.
+/// Membrane models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Membrane {
     /// Finite elements with warp, weft and shear curves.
@@ -19,7 +19,7 @@ pub enum Membrane {
     Springs,
 }
 
-/// What a sheet resists when it is folded.
+/// Bending models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bending {
     /// Quadratic hinges, for sheets that hardly stretch: their matrix never changes.
@@ -49,7 +49,7 @@ impl Models {
     /// fastest.
     pub const STATIC: Self = Self { membrane: Membrane::Woven, bending: Bending::Quadratic };
 
-    /// What the scoreboard compares.
+    /// The pairs that the scoreboard compares.
     pub const ALL: [Self; 5] = [
         Self::DEFAULT,
         Self { membrane: Membrane::StVenantKirchhoff, bending: Bending::Hinge },
@@ -78,7 +78,7 @@ impl Models {
     /// The membrane of a cloth.
     ///
     /// # Errors
-    /// What [`Fabric::check`] finds.
+    /// Every error of [`Fabric::check`].
     pub fn membrane(self, cloth: &Cloth<'_>) -> Result<Box<dyn Resistance>, ClothError> {
         cloth.fabrics.iter().try_for_each(|f| f.check())?;
         if let (Some(limit), false) = (cloth.limit, self.membrane == Membrane::Woven) {
@@ -107,7 +107,7 @@ impl Models {
     /// Membrane and bending of a cloth, with the friction between its yarns where it has any.
     ///
     /// # Errors
-    /// What [`Fabric::check`] finds.
+    /// Every error of [`Fabric::check`].
     pub fn energies(self, cloth: &Cloth<'_>) -> Result<Vec<Box<dyn Resistance>>, ClothError> {
         let mut energies = vec![self.membrane(cloth)?];
         if cloth.is_limp() {

@@ -1,13 +1,13 @@
-//! Which elements add to which block of a matrix.
+//! The places of elements in the blocks of a matrix.
 //!
-//! Blocks are summed each by itself, in the order of its elements, so they can be summed side by
-//! side and have the same bits for any number of threads. Cost: 8 bytes a pair of an element's
-//! nodes, and one look into the pattern for each.
+//! Each block is summed in the order of its elements, so blocks can be summed in parallel and have
+//! the same bits for any number of threads. Cost: 8 bytes and one search in the pattern per pair of
+//! nodes of an element.
 
 use crate::linear::{Pattern, Slot};
 use std::sync::Arc;
 
-/// An element's share in a block: its nodes that are the block's row and column.
+/// The contribution of an element to a block: its nodes that are the row and column of the block.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Share {
     pub(super) element: u32,
@@ -15,7 +15,7 @@ pub(super) struct Share {
     pub(super) column: u8,
 }
 
-/// Where the blocks of one energy's second derivative are among those of a matrix.
+/// The places of the second derivative of one energy in a matrix.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
     /// The first share of each block; empty where there are none at all.
@@ -26,7 +26,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// Of so many elements with these nodes; what is held still has no block.
+    /// Of so many elements with these nodes; held nodes have no block.
     pub(super) fn of<const N: usize>(
         pattern: &Pattern,
         count: usize,
@@ -71,7 +71,7 @@ impl Places {
         self.starts.is_empty()
     }
 
-    /// The same in a wider pattern of so many blocks, in which the blocks of this one are at
+    /// The same in a wider pattern of so many blocks, in which the blocks of this pattern are at
     /// `slots`, ascending.
     #[must_use]
     pub(crate) fn moved(&self, slots: &[u32], blocks: usize) -> Self {
@@ -80,7 +80,7 @@ impl Places {
     }
 }
 
-/// First shares at other slots; nothing where there are none.
+/// First shares at other slots; empty where there are none.
 fn moved(starts: &[u32], slots: &[u32], blocks: usize) -> Vec<u32> {
     let Some(end) = starts.last() else { return Vec::new() };
     let mut moved = Vec::with_capacity(blocks + 1);

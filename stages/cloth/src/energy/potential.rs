@@ -31,12 +31,12 @@ impl Projection {
     }
 }
 
-/// A potential energy of the nodes' positions, in joules.
+/// A potential energy of the positions of the nodes, in joules.
 ///
-/// All results are the same bits for any number of threads. An energy without a second derivative
-/// needs its value and its gradient alone.
+/// All results have the same bits for any number of threads. An energy without a second derivative
+/// needs only a value and a gradient.
 pub trait Energy: Send + Sync {
-    /// What it is called in reports.
+    /// Its name in reports.
     fn name(&self) -> &'static str;
 
     /// Energy at `x`, joules.
@@ -45,34 +45,31 @@ pub trait Energy: Send + Sync {
     /// Adds dE/dx (that is, minus the force, newtons) to `gradient`.
     fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]);
 
-    /// Hands each group of nodes that the second derivative couples to `visit`, so that the
-    /// sparsity pattern can be built.
+    /// Visits each group of nodes that the second derivative couples, for the sparsity pattern.
     fn couplings(&self, _visit: &mut dyn FnMut(&[u32])) {}
 
-    /// Where its blocks are among those of a pattern that holds its couplings: looked up once a
-    /// pattern.
+    /// The places of its blocks in a pattern that has its couplings, found once per pattern.
     fn places(&self, _pattern: &Pattern) -> Places {
         Places::default()
     }
 
-    /// Adds the 3 x 3 blocks of the second derivative (N/m) to the values of a matrix, at its
-    /// places there.
+    /// Adds the 3 x 3 blocks of the second derivative (N/m) to the values of a matrix, at `places`.
     fn add_matrix(&self, _x: &[Vec3], _form: Projection, _places: &Places, _values: &mut [Matrix3<f64>]) {}
 }
 
-/// What a sheet itself resists with, as the static solver needs it: an energy of elements that can
-/// be cut to some of its nodes, made stiffer, and that may remember.
+/// The elastic energy of a sheet for the static solver: it can be restricted to a subset of nodes,
+/// its bending can be scaled, and it may have a history.
 pub trait Resistance: Energy {
     /// A copy.
     fn boxed(&self) -> Box<dyn Resistance>;
 
-    /// The same of the elements that an active node is in.
+    /// The same, restricted to the elements with an active node.
     fn part(&self, subset: &Subset) -> Box<dyn Resistance>;
 
-    /// Takes over what such a part has learnt of its elements.
-    fn learn(&mut self, subset: &Subset, part: &dyn Resistance);
+    /// Takes over the history of a restricted copy.
+    fn merge(&mut self, subset: &Subset, part: &dyn Resistance);
 
-    /// To find its kind again.
+    /// Its concrete type.
     fn as_any(&self) -> &dyn Any;
 
     /// Whether its second derivative is the same everywhere.
@@ -81,24 +78,22 @@ pub trait Resistance: Energy {
     /// Makes bending so many times stiffer (bending continuation); other energies stay.
     fn scale_bending(&mut self, by: f64);
 
-    /// Remembers the stress that a linear model predicts for `moves` from `x`: the next matrix has
-    /// that one.
+    /// Keeps the stress that a linear model predicts for `moves` from `x`, for the next matrix.
     fn predict(&mut self, x: &[Vec3], moves: &[Vec3]);
 
-    /// Whether it holds the sheet where it has been, as friction does: such an energy is not
-    /// stored.
+    /// Whether it is hysteretic, as friction is: such an energy is not stored.
     fn is_hysteretic(&self) -> bool;
 
-    /// Holds every element as it is at `x`.
+    /// Sets the held angle of every element to that at `x`.
     fn hold(&mut self, x: &[Vec3]);
 
-    /// Where it holds each element; nothing where it holds none.
+    /// The held angles; empty where there are none.
     fn held(&self) -> &[f64];
 
-    /// Holds each element there, if there are as many.
+    /// Sets the held angles, if there are as many as elements.
     fn hold_at(&mut self, held: &[f64]);
 
-    /// Lets what it holds follow what has moved farther than it can hold.
+    /// Moves the held angles along with elements that have turned farther than friction holds.
     fn drag(&mut self, x: &[Vec3]);
 }
 
@@ -118,8 +113,8 @@ pub fn total_gradient(energies: &[&dyn Energy], x: &[Vec3]) -> Vec<Vec3> {
     gradient
 }
 
-/// An all-zero matrix with the pattern of these energies' second derivatives, for `n` nodes, and
-/// each energy's places in it.
+/// A zero matrix with the pattern of the second derivatives of these energies, for `n` nodes, and
+/// the places of each energy in it.
 #[must_use]
 pub fn matrix_of(n: usize, energies: &[&dyn Energy]) -> (BlockMatrix, Vec<Places>) {
     let matrix = BlockMatrix::with_couplings(n, |visit| energies.iter().for_each(|e| e.couplings(visit)));

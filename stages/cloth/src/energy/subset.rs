@@ -1,5 +1,4 @@
-//! The active subset of a mesh: some of its nodes move, the elements about them are a smaller mesh
-//! of their own.
+//! A subset of a mesh: the active nodes, and the elements around them as a smaller mesh.
 
 /// Marks a node that is not in the subset.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -12,8 +11,8 @@ pub struct Subset {
 }
 
 impl Subset {
-    /// The `active` nodes and all that are `included` beside them, numbered in their order; and
-    /// which nodes these are.
+    /// The `active` nodes and all that are `included`, renumbered in their order; also returns
+    /// their indices.
     pub(crate) fn new(active: Vec<bool>, included: &[bool]) -> (Self, Vec<u32>) {
         let nodes: Vec<u32> = (0..active.len() as u32).filter(|&i| included[i as usize]).collect();
         let mut index = vec![NONE; active.len()];

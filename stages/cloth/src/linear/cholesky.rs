@@ -97,7 +97,7 @@ impl Cholesky {
         }
     }
 
-    /// Solves `A x = b` with the factor at hand.
+    /// Solves `A x = b` with the last factor.
     #[must_use]
     pub fn solve(&self, b: &[Vec3]) -> Vec<Vec3> {
         let (rows, columns) = (b.len() * self.width, 3 / self.width);

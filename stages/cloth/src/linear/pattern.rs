@@ -28,7 +28,7 @@ pub struct Slot {
 }
 
 impl Pattern {
-    /// The pattern that couples all nodes of each group that `groups` hands out; groups may repeat
+    /// The pattern that couples all nodes of each group that `groups` visits; groups may repeat
     /// each other.
     pub fn new(nodes: usize, groups: impl FnOnce(&mut dyn FnMut(&[u32]))) -> Self {
         Self::between_free(nodes, Vec::new(), groups)

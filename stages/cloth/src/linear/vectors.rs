@@ -1,4 +1,4 @@
-//! What wide vector registers leave behind.
+//! Clears the state of wide vector registers.
 
 use faer::ColRef;
 use std::hint::black_box;

@@ -47,7 +47,7 @@ pub(super) fn check_indices(triangles: &[[u32; 3]], count: usize) -> Result<(), 
     Ok(())
 }
 
-/// Triangles at one edge among which one that is listed twice is looked for.
+/// Greatest number of triangles at an edge among which duplicates are sought.
 const MOST_SHARING: usize = 16;
 
 /// One triangle's side of an edge, before sides are paired.
@@ -94,10 +94,10 @@ pub(super) fn edges(
     Ok((edges, of_triangle))
 }
 
-/// The halves that meet at an edge, two and two. Where a seam joins more than two sheets, the two
-/// halves of one sheet belong together: a line inside it to which another is sewn. Of what is left,
-/// the first two are a seam like any other, and each further sheet hangs on it by its border alone,
-/// without a fold.
+/// The halves of an edge in pairs. Where a seam joins more than two sheets, the two halves of one
+/// sheet belong together: a line inside it to which another is sewn. Of what is left, the first two
+/// are a seam like any other, and each further sheet hangs on it by its border alone, without a
+/// fold.
 fn parts(group: &[Half], rest: &[[Vector2<f64>; 3]], facing: Facing) -> Vec<Vec<Half>> {
     if group.len() <= 2 || facing == Facing::Alike {
         return vec![group.to_vec()];

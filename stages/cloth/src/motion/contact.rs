@@ -1,6 +1,7 @@
-//! What cloth meets on its way: the body, and itself.
+//! Contact of moving cloth with the body and with itself, as corrections of the moves of a step.
+//! Cost: linear in the pairs.
 
-use crate::contact::limit::hold_apart;
+use crate::contact::step_limit::limit_with_search;
 use crate::statics::drive::solve::Collider;
 use nalgebra::Vector3;
 use toile_geometry::cloth_tree::ClothTree;
@@ -9,36 +10,36 @@ use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of an overlap of two layers that one step takes away.
+/// Share of the overlap of two layers that one step removes.
 const RELEASE: f64 = 0.2;
 
-/// How the body answers cloth that touches it.
+/// The response of the body to cloth in contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Response {
-    /// Share of the speed into the body that comes back, 0 to 1.
+    /// Coefficient of restitution, 0 to 1.
     pub restitution: f64,
-    /// Stiffness with which cloth within its distance is pushed off, N/m a node; where there is
-    /// none, it is stopped at its distance.
+    /// Penalty stiffness within the contact distance, N/m per node. `None` stops cloth at the
+    /// contact distance.
     pub penalty: Option<f64>,
 }
 
-/// Penalty forces use no more than this share of the stiffness that would be unstable.
+/// Greatest penalty stiffness, as a share of the unstable one.
 const PENALTY_SHARE: f64 = 0.5;
 
-/// What an answer is reckoned with.
+/// What the response depends on.
 pub(super) struct Answer<'a> {
     pub(super) response: Response,
-    /// One over the mass of each node, 1/kg; 0 for one that is held.
+    /// Inverse mass of each node, 1/kg; 0 for pinned nodes.
     pub(super) inverse: &'a [f64],
-    /// s.
+    /// Time step, s.
     pub(super) dt: f64,
-    /// Coulomb's coefficient.
+    /// Coefficient of friction.
     pub(super) friction: f64,
 }
 
 impl Answer<'_> {
-    /// The way along the normal, and how much of it is velocity, of a node at `gap` from its
-    /// distance that would go by `approach`; none for one that is left alone.
+    /// The move along the normal of a node at `gap` from the contact distance that would move by
+    /// `approach`, and how much of it is velocity; `None` for a node that is not in contact.
     fn along_normal(&self, node: usize, gap: f64, approach: f64) -> Option<(f64, f64)> {
         if let Some(penalty) = self.response.penalty {
             let square = self.dt * self.dt * self.inverse[node];
@@ -50,31 +51,31 @@ impl Answer<'_> {
         }
         let back = -self.response.restitution * approach;
         Some(match (gap < 0.0, back > 0.0) {
-            // Out of the layer it is lifted; that is no speed of its own.
+            // The node is lifted to the contact distance, which is no velocity.
             (true, _) => ((-gap).max(back), approach.max(back).max(0.0)),
             (false, false) => (-gap, -gap),
-            // As much as is left of the way, it goes back.
+            // The node moves back by the rest of its move.
             (false, true) => (-gap - self.response.restitution * (approach + gap), back),
         })
     }
 }
 
-/// The skin near vertices that move.
-pub(super) fn skin_near(
-    wearer: Collider<'_>,
+/// The nearest places of the body for vertices that move.
+pub(super) fn nearest_on_body(
+    collider: Collider<'_>,
     x: &[Vec3],
     moves: &[Vec3],
     offset: f64,
 ) -> Vec<Option<Nearest>> {
     let within: Vec<f64> = moves.iter().map(|m| offset + m.norm()).collect();
-    wearer.skin.nearest(x, &within)
+    collider.surface.nearest(x, &within)
 }
 
-/// Keeps moves out of the body: what a vertex loses of its way into it, times the friction, it may
-/// lose of its way along it.
+/// Keeps moves out of the body, with Coulomb friction: the tangential move is reduced by up to the
+/// coefficient of friction times the lost normal move.
 ///
-/// Returns how much of each move is a push out of the layer around the body, which is no velocity.
-pub(super) fn off_the_body(
+/// Returns how much of each move lifts the vertex to the contact distance, which is no velocity.
+pub(super) fn respond_to_body(
     near: &[Option<Nearest>],
     answer: &Answer<'_>,
     moves: &mut [Vec3],
@@ -94,9 +95,9 @@ pub(super) fn off_the_body(
     pushed
 }
 
-/// SelfContact of cloth that come nearer than `thickness` are stopped, with friction, and pushed
-/// apart a little.
-pub(super) fn off_itself(
+/// Stops layers of cloth that come nearer than `thickness`, with friction, and pushes them apart a
+/// little.
+pub(super) fn respond_to_self_contact(
     pairs: &[Pair],
     x: &[Vec3],
     moves: &mut [Vec3],
@@ -118,9 +119,10 @@ pub(super) fn off_itself(
             continue;
         }
         let along = way - normal * approach;
-        // The weights of either side have the sum 1: the mean of both.
-        let rub: f64 = (0..4).map(|i| 0.5 * c.weights[i].abs() * friction[p.nodes[i] as usize]).sum();
-        let (length, loss) = (along.norm(), share * rub * (wanted - approach));
+        // The weights of either side have the sum 1, so that this is the mean of both sides.
+        let mean_friction: f64 =
+            (0..4).map(|i| 0.5 * c.weights[i].abs() * friction[p.nodes[i] as usize]).sum();
+        let (length, loss) = (along.norm(), share * mean_friction * (wanted - approach));
         let drag = if length > 0.0 { along * (loss / length).min(1.0) } else { along };
         let change = (normal * (wanted - approach) - drag) / sum;
         for i in 0..4 {
@@ -130,10 +132,10 @@ pub(super) fn off_itself(
     }
 }
 
-/// Cuts moves short where cloth would pass through cloth; to what share all of the cloth was, for
-/// want of a better way.
-pub(super) fn stop_short(tree: &ClothTree, x: &[Vec3], moves: &mut [Vec3], thickness: f64) -> f64 {
+/// Shortens moves where cloth would collide with cloth; returns the share to which the whole step
+/// was shortened.
+pub(super) fn limit_step(tree: &ClothTree, x: &[Vec3], moves: &mut [Vec3], thickness: f64) -> f64 {
     let seek = |moves: &[Vec3]| tree.pairs(x, moves, thickness);
     let pairs = seek(moves);
-    hold_apart(x, moves, pairs, |_| true, |moves| Some(seek(moves))).1
+    limit_with_search(x, moves, pairs, |_| true, |moves| Some(seek(moves))).1
 }

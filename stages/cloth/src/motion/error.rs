@@ -38,7 +38,7 @@ pub enum MotionError {
         /// Seams whose pairs seem to run against each other.
         reversed: Vec<String>,
     },
-    /// What is wrong with the start.
+    /// A fault of the initial positions.
     #[error(transparent)]
     Start(#[from] StartError),
     /// Steps so short that the motion would not end.

@@ -1,4 +1,4 @@
-//! A fall past the body ends a motion: there is nothing to follow any more.
+//! A fall past the body ends a motion. Cost: O(n) a check.
 
 use super::Vec3;
 use super::moving::Moving;
@@ -9,21 +9,19 @@ use crate::statics::drive::solve::Collider;
 use crate::statics::levels::cloths::pieces_of_scene;
 use crate::statics::levels::pieces::Pieces;
 
-/// What a fall is told by.
+/// What a fall is found by.
 pub(super) struct Falls {
     body: BodyBox,
-    /// The piece of cloth of each vertex, and of each node once seams are joined, with what pins
-    /// hold.
+    /// The piece of each vertex, and of each node once seams are joined, with what is pinned.
     open: (Vec<u32>, Vec<bool>),
     joined: (Vec<u32>, Vec<bool>),
 }
 
 impl Falls {
-    /// Of a scene on a body; nothing where there is none, or no weight in the end: such a motion is
-    /// followed.
-    pub(super) fn of(scene: &Scene, wearer: Option<Collider<'_>>, pieces: &Pieces) -> Option<Self> {
+    /// Of a scene on a body; `None` without a body or without gravity in the last phase.
+    pub(super) fn of(scene: &Scene, collider: Option<Collider<'_>>, pieces: &Pieces) -> Option<Self> {
         let gravity = scene.phases.last().map(|p| p.gravity).unwrap_or_default();
-        let body = wearer.and_then(|w| BodyBox::of(w.skin, &gravity))?;
+        let body = collider.and_then(|c| BodyBox::of(c.surface, &gravity))?;
         let open = (pieces_of_scene(scene), pieces.pinned.clone());
         let mut joined = (vec![NO_PIECE; pieces.nodes], vec![false; pieces.nodes]);
         for (v, &n) in pieces.node.iter().enumerate() {
@@ -33,7 +31,7 @@ impl Falls {
         Some(Self { body, open, joined })
     }
 
-    /// The cloth that is past the body now, if any is.
+    /// The cloth that is past the body, if any.
     pub(super) fn look(&self, scene: &Scene, moving: &Moving) -> Option<Fallen> {
         let (piece, held) = if moving.is_joined { &self.joined } else { &self.open };
         if !moving.has_weight() || piece.len() != moving.state.x.len() {

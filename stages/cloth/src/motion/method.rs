@@ -1,4 +1,4 @@
-//! The solvers that step, made for one sheet.
+//! The time-stepping solvers, made for one sheet.
 
 use crate::energy::Vec3;
 use crate::error::ClothError;
@@ -6,29 +6,31 @@ use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, Xpbd};
 
-/// Share of the explicit limit that the steps start with: cloth stiffens.
+/// First explicit step, as a share of the stability limit: cloth stiffens.
 const STABLE: f64 = 0.8;
 
-/// A solver and what it trades.
+/// A solver and its parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
-    /// Explicit, second order, undamped; as many small steps as stability asks for.
+    /// Central differences: explicit, of second order, undamped, with as many small steps as
+    /// stability needs.
     CentralDifferences,
-    /// Stable at any step, damps what the step does not resolve.
+    /// Implicit Euler: stable at any step, damps motion that the step does not resolve.
     ImplicitEuler {
-        /// Force left on a vertex, N.
+        /// Greatest residual force on a vertex, N.
         tolerance: f64,
         /// Conjugate gradients to this relative residual instead of a factor.
         relative: Option<f64>,
     },
-    /// Positions by Gauss-Seidel in small steps: always a picture, too soft where steps are few.
+    /// Extended position-based dynamics: Gauss-Seidel in small steps, always stable, too soft where
+    /// steps are few.
     Xpbd {
         /// Small steps in a step.
         substeps: usize,
     },
-    /// Local and global turns with one factor.
+    /// Projective dynamics: local and global iterations with one factor.
     Projective {
-        /// Turns a step.
+        /// Iterations a step.
         iterations: usize,
     },
 }
@@ -45,7 +47,8 @@ impl Method {
     ) -> Result<Box<dyn Solver>, ClothError> {
         Ok(match self {
             Self::CentralDifferences => {
-                // A whole number of stable steps, so that an end in time is met by whole steps.
+                // A whole number of stable steps fills the step, so that phases end after whole
+                // steps.
                 let steps = (dt / (STABLE * CentralDifferences::limit(model, x))).ceil().max(1.0);
                 Box::new(CentralDifferences::adaptive(dt / steps))
             }
@@ -69,7 +72,7 @@ impl Method {
         matches!(self, Self::Xpbd { .. } | Self::Projective { .. })
     }
 
-    /// Whether it takes shorter steps than it is given: an end in time is then met to one of them.
+    /// Whether it makes shorter steps than the given one; a phase then ends to within one of them.
     pub(super) fn chooses_its_step(self) -> bool {
         matches!(self, Self::CentralDifferences)
     }

@@ -1,11 +1,11 @@
-//! `Motion`: a whole scene in time, with any of the solvers that step.
+//! `Motion`: dynamics of a whole scene, with any of the time-stepping solvers.
 //!
-//! Method: a step of the solver for the sheet alone, then three corrections of where it wants to
-//! go: seams close at a set speed as if by hands, cloth stays off cloth, cloth stays off the body
-//! with Coulomb's friction; at last the step is cut short wherever anything would pass through
-//! anything. Pairs that have met become one vertex, with their momentum. Cost: steps times one
-//! solver step; contacts are linear in the triangles. Limit: corrections after the step are of
-//! first order in time whatever the solver is, and a stack of many layers settles slowly.
+//! Method: a step of the solver for the sheet alone, then three corrections of its moves: seams
+//! close at a set speed, layers of cloth stay apart, and cloth stays outside the body with Coulomb
+//! friction. Last, moves are shortened until nothing collides. Pairs that have met become one
+//! vertex with the common momentum. Cost: one solver step a step, and contacts linear in the
+//! triangles. Limits: the corrections are of first order in time for any solver, and a stack of
+//! many layers comes to rest slowly.
 
 mod contact;
 mod error;
@@ -71,8 +71,8 @@ pub struct Motion {
     pub method: Method,
     /// Membrane and bending, for solvers that take them as energies.
     pub models: Models,
-    /// Time between two looks at contacts, s. Above 1/120 s a tight garment slips off: contacts
-    /// hold after the step, not in it.
+    /// Time between two searches for contacts, s. Above 1/120 s a tight garment slips off, for
+    /// contacts act after the step, not in it.
     pub dt: f64,
     /// Mass-proportional drag, 1/s.
     pub drag: f64,
@@ -80,12 +80,11 @@ pub struct Motion {
     pub viscosity: f64,
     /// Speed at which the two sides of a seam are brought together, m/s.
     pub closing: f64,
-    /// Share of the friction with the body and among cloth that acts while seams close: hands that
-    /// sew smooth the cloth.
+    /// Share of friction that acts while seams close.
     pub sewing_friction: f64,
     /// Seams are joined when their gaps are below this, m.
     pub join_gap: f64,
-    /// How a drape is helped to rest.
+    /// How draping is damped.
     pub calming: Calming,
     /// No edge stays longer than its rest length by more than this share (Provot, 1995).
     pub strain_limit: Option<f64>,
@@ -93,22 +92,22 @@ pub struct Motion {
     pub response: Response,
     /// When to end.
     pub until: Until,
-    /// Wall time before giving up.
+    /// Wall time at most.
     pub budget: Duration,
 }
 
-/// How a drape is helped to rest: folds form freely first, and what swings dies out then.
+/// How draping is damped: folds form freely first, then oscillations are damped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Calming {
     /// Time in which the drag doubles, s, up to 120 1/s; infinite where it stays.
     pub doubling: f64,
-    /// Time in which friction grows to its full value, s: cloth slips into place as a wearer shakes
-    /// it.
+    /// Time in which friction grows to its full value, s: cloth slips into place as a collider
+    /// shakes it.
     pub slip: f64,
 }
 
 impl Calming {
-    /// Nothing helps.
+    /// No added damping.
     pub const NONE: Self = Self { doubling: f64::INFINITY, slip: 0.0 };
 
     /// The drag after `time` s of draping, 1/s.
@@ -122,7 +121,7 @@ impl Calming {
     }
 }
 
-/// Drag grows up to this, 1/s: above, cloth creeps.
+/// Greatest drag, 1/s: above it cloth creeps.
 const GREATEST_DRAG: f64 = 120.0;
 
 impl Default for Motion {
@@ -152,11 +151,11 @@ pub struct Progress {
     pub time: f64,
     /// Steps made.
     pub steps: usize,
-    /// Greatest way of a vertex since the last look, as a speed, m/s.
+    /// Greatest move of a vertex since the last check, as a speed, m/s.
     pub speed: f64,
     /// Widest open seam, m; 0 once all are joined.
     pub gap: f64,
-    /// Greatest force that the solver's equations leave, N.
+    /// Greatest residual force of the solver, N.
     pub residual: f64,
 }
 
@@ -169,54 +168,53 @@ pub struct Moved {
     pub velocities: Vec<Vec3>,
     /// How it ended.
     pub progress: Progress,
-    /// Whether it is at rest; after [`Until::Phases`] always true, for that is all that was asked.
+    /// Whether it is at rest; always true after [`Until::Phases`].
     pub converged: bool,
-    /// Whether contacts of cloth with cloth held all of it back in the last step: it hangs in the
-    /// air.
+    /// Whether self-contact held the whole cloth back in the last step, so that it is in the air.
     pub is_jammed: bool,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
-    /// Widest seam when it was joined, m; nothing where there are none.
+    /// Widest gap of the seams when they were joined, m; `None` without seams.
     pub joined_at: Option<f64>,
 }
 
 /// Longest time for sewing, s.
 const LONGEST: f64 = 6.0;
 
-/// A seam that has closed by less than this share of its widest gap in [`PATIENCE`] is stuck.
+/// Share of its widest gap by which a seam must close within [`PATIENCE`]; otherwise it is stuck.
 const LEAST_CLOSED: f64 = 0.02;
 
-/// Simulated time in which an open seam must come nearer, s.
+/// Simulated time in which the gap of an open seam must shrink, s.
 const PATIENCE: f64 = 0.5;
 
-/// Time between two looks at speed and energy, s.
+/// Time between two checks of speed and energy, s.
 const LOOK: f64 = 1.0 / 60.0;
 
-/// Times nearer than this are the same, s.
+/// Difference below which two times count as equal, s.
 const SAME_TIME: f64 = 1e-9;
 
 impl Motion {
-    /// Moves `scene`; `progress` hears of every step and may stop it.
+    /// Simulates `scene`; `progress` is called after every step and may stop it.
     ///
     /// # Errors
     /// Every [`MotionError`].
     pub fn run(
         &self,
         scene: &Scene,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
-        self.run_until_stopped(scene, wearer, &Stopper::default(), progress)
+        self.run_until_stopped(scene, collider, &Stopper::default(), progress)
     }
 
-    /// The same; `stopper` is asked inside of steps, too, for a step of stiff cloth may take long.
+    /// The same; `stopper` is also asked within steps, for a step of stiff cloth may take long.
     ///
     /// # Errors
     /// Every [`MotionError`].
     pub fn run_until_stopped(
         &self,
         scene: &Scene,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
         stopper: &Stopper,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
@@ -225,11 +223,11 @@ impl Motion {
             one_fabric(scene)?;
         }
         let pieces = Pieces::new(scene);
-        let start = check::<MotionError>(scene, wearer.map(|w| w.skin), self.join_gap)?;
-        let falls = Falls::of(scene, wearer, &pieces);
+        let start = check::<MotionError>(scene, collider.map(|c| c.surface), self.join_gap)?;
+        let falls = Falls::of(scene, collider, &pieces);
         let (clock, budget, asked) = (Instant::now(), self.budget, stopper.clone());
         let stopper = Stopper::when(move || asked.is_up() || clock.elapsed() > budget);
-        let mut run = Run { settings: self, scene, wearer, pieces, falls, clock, stopper, progress };
+        let mut run = Run { settings: self, scene, collider, pieces, falls, clock, stopper, progress };
         let open = Moving::open(&run, start)?;
         match self.until {
             Until::Sewn { longest } => {
@@ -251,15 +249,15 @@ fn one_fabric(scene: &Scene) -> Result<(), MotionError> {
     }
 }
 
-/// A motion under way.
+/// A running motion.
 struct Run<'a> {
     settings: &'a Motion,
     scene: &'a Scene,
-    wearer: Option<Collider<'a>>,
+    collider: Option<Collider<'a>>,
     pieces: Pieces,
     falls: Option<Falls>,
     clock: Instant,
-    /// Says to stop where the caller does, and out of time.
+    /// Tells to stop where the caller does, and when time is over.
     stopper: Stopper,
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
 }
@@ -267,7 +265,7 @@ struct Run<'a> {
 impl Run<'_> {
     fn phases(&mut self, moving: Moving, longest: f64) -> Result<Moved, MotionError> {
         let mut moving = self.sew(moving, longest)?;
-        moving.calm(self.settings.drag, 1.0);
+        moving.set_damping(self.settings.drag, 1.0);
         let mut sewn_for = moving.progress.time;
         for phase in &self.scene.phases {
             moving.set_gravity(phase.gravity);
@@ -284,10 +282,10 @@ impl Run<'_> {
         Ok(self.finish(moving, converged))
     }
 
-    /// Closes the seams, if there are any, and joins them: without weight and without wind.
+    /// Closes and joins the seams, if there are any, without weight and wind.
     fn sew(&mut self, mut moving: Moving, longest: f64) -> Result<Moving, MotionError> {
         moving.set_gravity(Vec3::zeros());
-        moving.calm(self.settings.drag, self.settings.sewing_friction);
+        moving.set_damping(self.settings.drag, self.settings.sewing_friction);
         moving.set_air(self.scene.phases.last().and_then(|p| p.air).map(Air::calmed));
         let (mut widest, mut since) = (f64::INFINITY, moving.progress.time);
         while !moving.seams.is_empty() && moving.progress.time < longest {
@@ -316,7 +314,7 @@ impl Run<'_> {
         let mut stored = f64::INFINITY;
         while moving.progress.time < end {
             let draped = moving.progress.time - began;
-            moving.calm(calming.drag(drag, draped), calming.friction(draped));
+            moving.set_damping(calming.drag(drag, draped), calming.friction(draped));
             let look = moving.progress.time + LOOK;
             let before = moving.state.x.clone();
             while look - moving.progress.time > SAME_TIME {
@@ -335,7 +333,7 @@ impl Run<'_> {
     }
 
     fn step(&mut self, moving: &mut Moving, end: f64) -> Result<(), MotionError> {
-        let stepped = moving.step(self.settings, self.wearer, end);
+        let stepped = moving.step(self.settings, self.collider, end);
         if let Err(MotionError::Cloth(ClothError::Stopped)) = stepped {
             return Err(self.stopped(moving));
         }
@@ -352,7 +350,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Why a motion is ended from outside.
+    /// Why the caller or the time limit ends a motion.
     fn stopped(&self, moving: &Moving) -> MotionError {
         let (seconds, Progress { time, gap, .. }) = (self.clock.elapsed(), moving.progress);
         match seconds > self.settings.budget {
@@ -373,8 +371,8 @@ impl Run<'_> {
     }
 
     fn finish(&self, mut moving: Moving, converged: bool) -> Moved {
-        if let Some(wearer) = self.wearer {
-            moving.clear(wearer);
+        if let Some(collider) = self.collider {
+            moving.restore_clearance(collider);
         }
         let spread = |values: &[Vec3]| match moving.is_joined {
             true => self.pieces.spread(values),

@@ -1,6 +1,7 @@
-//! The sheet on its way: one step with all its corrections, and the join.
+//! The moving sheet: one step with all its corrections, and the joining of seams. Cost: a step of
+//! the solver, and contacts linear in the pairs.
 
-use super::contact::{Answer, off_itself, off_the_body, skin_near, stop_short};
+use super::contact::{Answer, limit_step, nearest_on_body, respond_to_body, respond_to_self_contact};
 use super::near::Near;
 use super::seams::Seams;
 use super::{Motion, MotionError, Progress, Run, Vec3};
@@ -17,20 +18,21 @@ use crate::statics::report::start::{check_lying, crossing, crossings};
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::signed_distance::Nearest;
 
-/// The shortest step of a solver that chooses its own, as a share of the time between two looks at
-/// contacts: shorter ones would take for ever.
+/// Shortest step of a solver that chooses its own, as a share of the time between two searches for
+/// contacts.
 const SHORTEST: f64 = 5e-5;
 
-/// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
+/// Relative difference below which two steps count as equal: the end of a phase is subject to
+/// rounding.
 const SAME_STEP: f64 = 1e-6;
 
-/// Rounds in which triangles are lifted off the body.
-const CLEAR_ROUNDS: usize = 10;
+/// Rounds at most in which triangles are lifted off the body.
+const CLEARANCE_ROUNDS: usize = 10;
 
-/// The body is looked for so far from a vertex whose triangle dips into it, m.
+/// Distance within which the body is sought for a vertex whose triangle dips into it, m.
 const FAR: f64 = 0.05;
 
-/// Contacts that leave less than this share of a step to all of the cloth hold it in the air.
+/// Share of a step below which contacts hold the whole cloth back in the air.
 const JAMMED: f64 = 0.5;
 
 pub(super) struct Moving {
@@ -38,14 +40,14 @@ pub(super) struct Moving {
     model: Model,
     solver: Box<dyn Solver>,
     method: super::Method,
-    /// Of the first panel: what solvers of one fabric take.
+    /// The fabric of the first panel, for solvers of one fabric.
     fabric: Fabric,
-    /// Distance at which cloth is held off the body and off itself, m.
+    /// Contact distance of cloth from the body and from itself, m.
     offset: f64,
-    /// Friction of cloth on cloth, a node.
+    /// Friction of cloth on cloth at each node.
     friction: Vec<f64>,
-    /// The share of all friction that acts.
-    rub: f64,
+    /// The share of friction that acts.
+    friction_share: f64,
     limit: Option<Provot>,
     dt: f64,
     tree: Option<ClothTree>,
@@ -55,13 +57,13 @@ pub(super) struct Moving {
     pub(super) progress: Progress,
     pub(super) is_joined: bool,
     pub(super) joined_at: Option<f64>,
-    /// Whether contacts held all of the cloth back in the last step: it hangs in the air, and is
+    /// Whether contacts held the whole cloth back in the last step, so that it is in the air and
     /// not at rest.
     pub(super) is_jammed: bool,
 }
 
 impl Moving {
-    /// The panels apart.
+    /// The open panels, before sewing.
     pub(super) fn open(run: &Run<'_>, start: Vec<Vec3>) -> Result<Self, MotionError> {
         let sheet = run.pieces.open_sheet(&cloths(run.scene))?;
         let pairs = run.pieces.seam_pairs();
@@ -80,7 +82,7 @@ impl Moving {
         Ok(moving)
     }
 
-    /// Pairs become single vertices at their common place, with their common momentum.
+    /// Joins each pair to one vertex at the common position, with the common momentum.
     pub(super) fn join(self, run: &Run<'_>) -> Result<Self, MotionError> {
         let sheet = run.pieces.sewn_sheet(&cloths(run.scene))?;
         let mut fixed = vec![false; run.pieces.points];
@@ -124,7 +126,7 @@ impl Moving {
             fabric: first[0].clone(),
             offset: fabrics.iter().skip(1).map(|f| f.thickness).fold(0.0, f64::max),
             friction,
-            rub: 1.0,
+            friction_share: 1.0,
             limit: settings.strain_limit.map(|limit| Provot::new(limit, 1)).transpose()?,
             dt: settings.dt,
             tree,
@@ -138,9 +140,9 @@ impl Moving {
         })
     }
 
-    /// Another drag, 1/s, and the share of friction that acts.
-    pub(super) fn calm(&mut self, drag: f64, rub: f64) {
-        (self.model.drag, self.rub) = (drag, rub);
+    /// Sets the drag, 1/s, and the share of friction that acts.
+    pub(super) fn set_damping(&mut self, drag: f64, friction_share: f64) {
+        (self.model.drag, self.friction_share) = (drag, friction_share);
     }
 
     pub(super) fn set_gravity(&mut self, gravity: Vec3) {
@@ -155,7 +157,7 @@ impl Moving {
         self.model.air = air.filter(Air::acts).map(|a| AirDrag::new(a, self.sheet.triangles()));
     }
 
-    /// Whether there are seams and all are within `gap`.
+    /// Whether there are seams and all gaps are below `gap`.
     pub(super) fn seams_met(&self, gap: f64) -> bool {
         !self.seams.is_empty() && self.progress.gap < gap
     }
@@ -166,19 +168,19 @@ impl Moving {
         self.model.elastic_energy(&self.state.x) + self.model.weight().value(&self.state.x)
     }
 
-    /// One step, no farther than to the time `end`.
+    /// One step, at most to the time `end`.
     pub(super) fn step(
         &mut self,
         settings: &Motion,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
         end: f64,
     ) -> Result<(), MotionError> {
         let dt = settings.dt.min(end - self.progress.time);
-        self.aim(dt)?;
+        self.set_step(dt)?;
         let start = self.state.x.clone();
         let (report, moves) = match self.method.chooses_its_step() {
-            true => self.many_steps(settings, wearer, dt)?,
-            false => self.one_step(settings, wearer)?,
+            true => self.many_steps(settings, collider, dt)?,
+            false => self.one_step(settings, collider)?,
         };
         for (v, m) in moves.iter().enumerate() {
             self.state.x[v] = start[v] + m;
@@ -194,36 +196,36 @@ impl Moving {
         Ok(())
     }
 
-    /// One step of the solver, corrected as a whole; by how much each node moves.
+    /// One step of the solver, corrected as a whole; returns the moves.
     fn one_step(
         &mut self,
         settings: &Motion,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
     ) -> Result<(Report, Vec<Vec3>), ClothError> {
         let start = self.state.x.clone();
         let report = self.solver.advance(&self.model, &mut self.state)?;
         let wanted: Vec<Vec3> = self.state.x.iter().zip(&start).map(|(x, s)| x - s).collect();
         let mut moves = wanted.clone();
         let dt = report.advanced;
-        let (pushed, is_free) = self.respond(settings, wearer, None, dt, &start, &mut moves);
-        self.is_jammed = self.hold(wearer, is_free, &start, &mut moves) < JAMMED;
-        self.turn(&moves, &wanted, &pushed, dt);
+        let (pushed, is_free) = self.respond(settings, collider, None, dt, &start, &mut moves);
+        self.is_jammed = self.limit_step(collider, is_free, &start, &mut moves) < JAMMED;
+        self.update_velocities(&moves, &wanted, &pushed, dt);
         Ok((report, moves))
     }
 
-    /// As many of the solver's own steps as fill `dt`, each corrected by what was near at their
-    /// start; by how much each node moves.
+    /// As many steps of the solver as fill `dt`, each corrected by what was near at the start;
+    /// returns the moves.
     ///
-    /// Errors: those of the solver; steps that are too short to fill it.
+    /// Errors: those of the solver, and steps that are too short.
     fn many_steps(
         &mut self,
         settings: &Motion,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
         dt: f64,
     ) -> Result<(Report, Vec<Vec3>), MotionError> {
         let start = self.state.x.clone();
         let foretold: Vec<Vec3> = self.state.v.iter().map(|v| v * dt).collect();
-        let near = Near::of(self.tree.as_ref(), wearer, &start, &foretold, self.offset);
+        let near = Near::of(self.tree.as_ref(), collider, &start, &foretold, self.offset);
         let (mut advanced, mut is_free, least) = (0.0, true, SHORTEST * settings.dt);
         let report = loop {
             self.model.stopper.check()?;
@@ -241,9 +243,9 @@ impl Moving {
             let wanted: Vec<Vec3> = self.state.x.iter().zip(&before).map(|(x, s)| x - s).collect();
             let mut moves = wanted.clone();
             let (pushed, free) =
-                self.respond(settings, wearer, Some(&near), report.advanced, &before, &mut moves);
+                self.respond(settings, collider, Some(&near), report.advanced, &before, &mut moves);
             is_free &= free;
-            self.turn(&moves, &wanted, &pushed, report.advanced);
+            self.update_velocities(&moves, &wanted, &pushed, report.advanced);
             self.state.x.iter_mut().zip(before.iter().zip(&moves)).for_each(|(x, (b, m))| *x = b + m);
             advanced += report.advanced;
             if advanced >= (1.0 - SAME_STEP) * dt {
@@ -252,45 +254,45 @@ impl Moving {
         };
         let wanted: Vec<Vec3> = self.state.x.iter().zip(&start).map(|(x, s)| x - s).collect();
         let mut moves = wanted.clone();
-        self.is_jammed = self.hold(wearer, is_free, &start, &mut moves) < JAMMED;
-        self.turn(&moves, &wanted, &vec![Vec3::zeros(); moves.len()], advanced);
+        self.is_jammed = self.limit_step(collider, is_free, &start, &mut moves) < JAMMED;
+        self.update_velocities(&moves, &wanted, &vec![Vec3::zeros(); moves.len()], advanced);
         Ok((report, moves))
     }
 
-    /// Lifts what dips into the body between its vertices: triangles that are wider than the body
-    /// is flat.
-    pub(super) fn clear(&mut self, wearer: Collider<'_>) {
-        for _ in 0..CLEAR_ROUNDS {
+    /// Lifts triangles that dip into the body between their vertices.
+    pub(super) fn restore_clearance(&mut self, collider: Collider<'_>) {
+        for _ in 0..CLEARANCE_ROUNDS {
             let start = self.state.x.clone();
-            let clearance = clearance(&self.sheet, wearer.skin, &start);
+            let clearance = clearance(&self.sheet, collider.surface, &start);
             if clearance.triangles == 0 {
                 return;
             }
             let within: Vec<f64> = clearance.lacks.iter().map(|l| if *l > 0.0 { FAR } else { 0.0 }).collect();
-            let skin = wearer.skin.nearest(&start, &within);
+            let surface = collider.surface.nearest(&start, &within);
             let lift = |(n, lack): (&Option<Nearest>, &f64)| {
                 n.as_ref().map_or(Vec3::zeros(), |n| n.normal * lack.min(self.offset))
             };
-            let mut moves: Vec<Vec3> = skin.iter().zip(&clearance.lacks).map(lift).collect();
+            let mut moves: Vec<Vec3> = surface.iter().zip(&clearance.lacks).map(lift).collect();
             moves
                 .iter_mut()
                 .zip(&self.model.fixed)
                 .filter(|(_, f)| **f)
                 .for_each(|(m, _)| *m = Vec3::zeros());
-            self.hold(Some(wearer), false, &start, &mut moves);
+            self.limit_step(Some(collider), false, &start, &mut moves);
             self.state.x.iter_mut().zip(&moves).for_each(|(x, m)| *x += m);
         }
     }
 
-    /// Velocities after `wanted` moves have become `moves`, of which `pushed` is no velocity.
-    fn turn(&mut self, moves: &[Vec3], wanted: &[Vec3], pushed: &[Vec3], dt: f64) {
+    /// Updates the velocities after the `wanted` moves were changed to `moves`, of which `pushed`
+    /// is no velocity.
+    fn update_velocities(&mut self, moves: &[Vec3], wanted: &[Vec3], pushed: &[Vec3], dt: f64) {
         for (v, m) in moves.iter().enumerate() {
             self.state.v[v] += (m - pushed[v] - wanted[v]) / dt;
         }
     }
 
-    /// Another solver where the step must be another: the last one before an end.
-    fn aim(&mut self, dt: f64) -> Result<(), ClothError> {
+    /// Makes a solver of another time step where it changes, as for the last step of a phase.
+    fn set_step(&mut self, dt: f64) -> Result<(), ClothError> {
         if self.method.chooses_its_step() || (dt - self.dt).abs() < SAME_STEP * self.dt {
             return Ok(());
         }
@@ -299,13 +301,13 @@ impl Moving {
         Ok(())
     }
 
-    /// How limits, seams, cloth and body change the moves from `x`; how much of each is a push, no
-    /// velocity, and whether the body and pins leave all of the cloth alone. What is near is sought
-    /// where it is not given.
+    /// Corrects the moves from `x` by strain limits, seams, self-contact and body. Returns how much
+    /// of each move is no velocity, and whether neither body nor pins have changed any. Seeks pairs
+    /// and the body where `near` is not given.
     fn respond(
         &self,
         settings: &Motion,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
         near: Option<&Near>,
         dt: f64,
         x: &[Vec3],
@@ -321,15 +323,24 @@ impl Moving {
         if let Some(tree) = &self.tree {
             let found = near.is_none().then(|| tree.pairs(x, moves, offset));
             let pairs = found.as_ref().or(near.map(|n| &n.pairs)).map_or(&[][..], |p| p);
-            off_itself(pairs, x, moves, &self.inverse, offset, &self.friction, self.rub);
+            respond_to_self_contact(
+                pairs,
+                x,
+                moves,
+                &self.inverse,
+                offset,
+                &self.friction,
+                self.friction_share,
+            );
         }
         let before = moves.to_vec();
-        let pushed = match wearer {
-            Some(wearer) => {
-                let skin = near.map_or_else(|| skin_near(wearer, x, moves, offset), |n| n.skin(x));
-                let friction = wearer.friction * self.rub;
+        let pushed = match collider {
+            Some(collider) => {
+                let surface =
+                    near.map_or_else(|| nearest_on_body(collider, x, moves, offset), |n| n.surface(x));
+                let friction = collider.friction * self.friction_share;
                 let answer = Answer { response: settings.response, inverse: &self.inverse, dt, friction };
-                off_the_body(&skin, &answer, moves, offset)
+                respond_to_body(&surface, &answer, moves, offset)
             }
             None => vec![Vec3::zeros(); moves.len()],
         };
@@ -338,22 +349,28 @@ impl Moving {
         (pushed, is_free)
     }
 
-    /// Ends moves where they would lead into the body or through cloth; to what share all of the
-    /// cloth was held back.
-    fn hold(&self, wearer: Option<Collider<'_>>, is_free: bool, start: &[Vec3], moves: &mut [Vec3]) -> f64 {
+    /// Shortens moves that would lead into the body or through cloth; returns the share to which
+    /// the whole step was shortened.
+    fn limit_step(
+        &self,
+        collider: Option<Collider<'_>>,
+        is_free: bool,
+        start: &[Vec3],
+        moves: &mut [Vec3],
+    ) -> f64 {
         let (offset, before) = (self.offset, moves.to_vec());
-        if let Some(wearer) = wearer {
-            wearer.skin.guard(start, moves, &vec![0.5 * offset; start.len()]);
+        if let Some(collider) = collider {
+            collider.surface.guard(start, moves, &vec![0.5 * offset; start.len()]);
         }
         let is_free = is_free && moves == before;
         let short = |moves: &mut [Vec3]| {
-            self.tree.as_ref().map_or(1.0, |tree| stop_short(tree, start, moves, offset))
+            self.tree.as_ref().map_or(1.0, |tree| limit_step(tree, start, moves, offset))
         };
         if is_free { among_themselves(&self.model.masses, moves, short) } else { short(moves) }
     }
 }
 
-/// The friction of cloth on cloth at each node: that of a fabric of the triangles around it.
+/// The friction of cloth on cloth at each node: that of the fabric of one of its triangles.
 fn node_friction(run: &Run<'_>, sheet: &Sheet, fabrics: &[&Fabric]) -> Vec<f64> {
     let mut friction = vec![0.0; sheet.vertex_count()];
     for (t, corners) in sheet.triangles().iter().enumerate() {
@@ -362,8 +379,8 @@ fn node_friction(run: &Run<'_>, sheet: &Sheet, fabrics: &[&Fabric]) -> Vec<f64> 
     friction
 }
 
-/// Shortens the moves of what nothing else holds as `short` does, but against their common motion,
-/// which is kept: cloth that meets cloth in mid-air changes how it is folded, not how it flies.
+/// Shortens the moves of cloth in free fall by `short`, relative to their common motion, which is
+/// kept: cloth that collides with itself in the air does not change its momentum.
 fn among_themselves(masses: &[f64], moves: &mut [Vec3], short: impl Fn(&mut [Vec3]) -> f64) -> f64 {
     let common = |moves: &[Vec3]| {
         let sum: Vec3 = moves.iter().zip(masses).map(|(m, w)| m * *w).sum();
@@ -373,7 +390,7 @@ fn among_themselves(masses: &[f64], moves: &mut [Vec3], short: impl Fn(&mut [Vec
     let mut own: Vec<Vec3> = moves.iter().map(|m| m - flight).collect();
     let wanted = own.clone();
     let share = short(&mut own);
-    // What was not held back keeps its bits.
+    // Moves that were not shortened must keep their bits.
     if own != wanted {
         let shift = flight - common(&own);
         moves.iter_mut().zip(&own).for_each(|(m, o)| *m = o + shift);

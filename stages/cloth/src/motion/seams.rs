@@ -1,4 +1,4 @@
-//! Seams that close at a set speed, as if by hands.
+//! Seams that close at a set speed. Cost: O(1) a pair.
 
 use crate::scene::Scene;
 use crate::statics::levels::pieces::Pieces;
@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Pairs of vertices on their way to each other.
+/// Pairs of vertices that close.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Seams {
     pub(super) pairs: Vec<[u32; 2]>,
@@ -23,8 +23,8 @@ impl Seams {
         self.pairs.iter().map(|p| (*p, gap(p))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Changes the moves so that each pair's gap shrinks by at most `most`, the pair's momentum
-    /// kept.
+    /// Changes the moves so that the gap of each pair shrinks by at most `most`, with the momentum
+    /// of the pair kept.
     pub(super) fn close(&self, x: &[Vec3], moves: &mut [Vec3], masses: &[f64], fixed: &[bool], most: f64) {
         for &[a, b] in &self.pairs {
             let (a, b) = (a as usize, b as usize);

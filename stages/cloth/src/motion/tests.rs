@@ -19,8 +19,8 @@ const METHODS: [Method; 4] = [
 
 fn run(motion: &Motion, scene: &Scene) -> Result<Moved, MotionError> {
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-    let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
-    motion.run(scene, wearer, &mut |_| ControlFlow::Continue(()))
+    let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
+    motion.run(scene, collider, &mut |_| ControlFlow::Continue(()))
 }
 
 fn falling(cells: u32) -> Scene {
@@ -153,7 +153,7 @@ fn a_sewn_motion_ends_when_the_seams_are_joined() {
     assert!(moved.converged && moved.joined_at.unwrap() < 5e-4);
 }
 
-/// The height of a small sheet let go 0.2 m above a floor of a great box, at its highest after it
+/// The height of a small sheet released 0.2 m above a floor of a great box, at its highest after it
 /// has met it.
 fn bounce(response: Response) -> f64 {
     let mut scene = falling(2);
@@ -161,10 +161,10 @@ fn bounce(response: Response) -> f64 {
     scene.positions = scene.rest.iter().map(|p| Vector3::new(p.x, 0.2, p.y)).collect();
     scene.phases[0].seconds = 0.2 + 0.15;
     let (floor, sides) = floor();
-    let skin = Body::new(floor, &sides);
+    let surface = Body::new(floor, &sides);
     let motion = Motion { response, dt: 1e-3, ..Motion::default() };
     let moved = motion
-        .run(&scene, Some(Collider { skin: &skin, friction: 0.0 }), &mut |_| ControlFlow::Continue(()))
+        .run(&scene, Some(Collider { surface: &surface, friction: 0.0 }), &mut |_| ControlFlow::Continue(()))
         .unwrap();
     moved.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -271,9 +271,9 @@ fn seams_are_sewn_without_wind() {
         scene.phases.iter_mut().for_each(|p| p.air = Some(air));
         let (mut last, mut seen) = (0.0, vec![]);
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-        let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
+        let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
         let motion = Motion { until, ..Motion::default() };
-        let ended = motion.run(&scene, wearer, &mut |p| {
+        let ended = motion.run(&scene, collider, &mut |p| {
             let sewn = last > 0.0 && p.gap == 0.0;
             last = p.gap;
             seen.push((p.time, p.gap, p.speed));
@@ -303,9 +303,9 @@ fn gravity_waits_for_the_seams() {
     let method = Method::Xpbd { substeps: 4 };
     let (mut sewn, mut time) = (0.0, 0.0);
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-    let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
+    let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
     let moved = Motion { method, drag: 4.0, ..Motion::default() }
-        .run(&scene, wearer, &mut |p| {
+        .run(&scene, collider, &mut |p| {
             sewn = if p.gap > 0.0 { p.time } else { sewn };
             time = p.time;
             ControlFlow::Continue(())
@@ -345,9 +345,9 @@ fn a_fall_past_the_body_ends_the_motion_and_one_without_a_body_does_not() {
     for method in METHODS {
         let mut end = 0.0;
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-        let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
+        let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
         let motion = Motion { method, ..Motion::default() };
-        let error = motion.run(&scene, wearer, &mut |p| {
+        let error = motion.run(&scene, collider, &mut |p| {
             end = p.time;
             ControlFlow::Continue(())
         });

@@ -89,7 +89,7 @@ impl Scene {
         self.phases.last().and_then(|p| p.air).map_or(Ok(()), |air| air.check_still())
     }
 
-    /// What panel `k` is made of.
+    /// The fabric of panel `k`.
     #[must_use]
     pub fn fabric_of(&self, k: usize) -> &Fabric {
         self.panels.get(k).and_then(|p| p.material.as_ref()).unwrap_or(&self.material)

@@ -1,4 +1,4 @@
-//! What a scene must satisfy before a solver sees it. O(n log n).
+//! Checks that every scene must pass before it is solved. Cost: O(n log n).
 
 use super::{Scene, SceneError};
 use crate::energy::Air;

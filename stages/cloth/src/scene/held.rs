@@ -1,8 +1,7 @@
-//! How friction holds a garment where it starts: what a solver that brought it to rest left, so
-//! that another run goes on from it.
+//! The history of friction of an equilibrium, from which another run goes on.
 //!
-//! Without it, contacts begin to hold where they are first seen, and cloth that was kept by
-//! friction has to slide a little before friction keeps it again.
+//! Without it, the anchors of friction are the initial positions, and cloth that was held by
+//! friction slides a little before friction holds it again.
 
 use super::{Scene, SceneError};
 use crate::contact::friction::FrictionContact;
@@ -10,20 +9,19 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Numbers of a contact besides its nodes.
+/// How many numbers a contact has besides its nodes.
 pub const FIGURES: usize = 15;
 
-/// What friction holds.
+/// The history of friction.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Held {
-    /// How far friction holds each vertex back on the body, m.
+    /// Tangential displacement of each vertex on the body, m.
     pub slides: Vec<Vec3>,
-    /// Distance at which the body begins to press on each vertex, m; none without a body.
+    /// Offset of body contact at each vertex, m; empty without a body.
     pub offsets: Vec<f64>,
-    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment; none
-    /// where there is no such friction.
+    /// Angles of bending hysteresis, by hinges of the sewn garment; empty where there is none.
     pub folds: Vec<f64>,
-    /// Where cloth lies on cloth, by sewn points.
+    /// Friction contacts of cloth with cloth, by sewn points.
     pub contacts: Vec<FrictionContact>,
 }
 
@@ -45,7 +43,7 @@ impl Held {
     }
 }
 
-/// A contact from its nodes and its other numbers: weights, normal, anchor, way slid, load,
+/// A contact from its nodes and its other numbers: weights, normal, anchor, displacement, load,
 /// coefficient.
 #[must_use]
 pub fn contact(nodes: [u32; 4], f: &[f64; FIGURES]) -> FrictionContact {

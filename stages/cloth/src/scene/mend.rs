@@ -1,9 +1,9 @@
-//! Mends the cloth of a scene that was read, and tells what is odd about it.
+//! Repairs the cloth of a scene that was read, and reports what is unusual.
 //!
-//! Triangles listed twice are dropped. Vertices that lie on each other without being joined are
-//! told, joined where that was asked for, and refused where a panel is nothing but faces by
-//! themselves: it would come apart. Pieces of a panel that nothing sews together are told. A vertex
-//! of no triangle stays where it starts. Cost: O(n log n).
+//! Triangles listed twice are dropped. Coincident vertices that are not joined are reported, or
+//! joined on request; a panel of separate faces is refused, for it would come apart. Pieces of a
+//! panel that nothing sews together are reported. A vertex without a triangle is pinned. Cost: O(n
+//! log n).
 
 use super::{Scene, SceneError, Seam};
 use nalgebra::Vector3;
@@ -20,7 +20,7 @@ const NAMED: usize = 5;
 /// The seam that joins what was welded.
 const WELD: &str = "weld";
 
-/// Mends what can be mended; a sentence for each thing done or found.
+/// Repairs what can be repaired; returns a sentence for each repair or finding.
 pub(super) fn mend(scene: &mut Scene, weld: bool) -> Result<Vec<String>, SceneError> {
     for (second, panel) in scene.panels.iter().enumerate() {
         if let Some(first) = scene.panels[..second].iter().position(|p| p.name == panel.name) {
@@ -73,7 +73,7 @@ fn hold_unused(scene: &mut Scene) -> Option<String> {
     Some(format!("{count}: {}", listed(&unused)))
 }
 
-/// Joins vertices that lie on each other, or tells of them.
+/// Joins coincident vertices, or reports them.
 fn coincident(scene: &mut Scene, weld: bool) -> Result<Option<String>, SceneError> {
     let n = scene.rest.len();
     let mut takes_part = vec![false; n];
@@ -149,7 +149,7 @@ fn check_faces(scene: &Scene, unjoined: &[[u32; 2]]) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Tells panels that fall into pieces.
+/// Reports panels that fall into pieces.
 fn loose(scene: &Scene) -> Option<String> {
     let seams = scene.seams.iter().flat_map(|s| &s.pairs).copied();
     let sides = links(&scene.triangles);

@@ -1,8 +1,7 @@
 //! Prepared scenes: panels, seams, a body and what the cloth is made of.
 //!
-//! A scene is what a solver starts from and what a judge measures against; `read` reads the JSON
-//! form `garment-scene-1` (described in docs/reference/scene.md), `generate` makes the standard
-//! ones.
+//! A scene is the input of every solver; `read` reads the JSON form `garment-scene-1` (described in
+//! docs/reference/scene.md), `generate` makes the standard ones.
 
 mod build;
 mod check;
@@ -36,46 +35,46 @@ use toile_geometry::obj::ObjError;
 /// A scene, checked: every index points at something and every number is finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Flat rest coordinates of every vertex, m; warp along y.
     pub rest: Vec<Vector2<f64>>,
-    /// Where every vertex starts, m; y is up.
+    /// The initial position of every vertex, m; y is up.
     pub positions: Vec<Vector3<f64>>,
     /// Vertices of each triangle, counter-clockwise at rest.
     pub triangles: Vec<[u32; 3]>,
-    /// The pieces it is cut from.
+    /// The panels.
     pub panels: Vec<Panel>,
-    /// What has to be sewn.
+    /// The seams.
     pub seams: Vec<Seam>,
     /// Elastic bands sewn to it.
     pub bands: Vec<Band>,
-    /// Vertices that stay where they start.
+    /// Pinned vertices.
     pub pinned: Vec<u32>,
-    /// What it is worn by.
+    /// The body, if any.
     pub body: Option<SceneBody>,
-    /// What panels are made of that do not say otherwise.
+    /// The fabric of panels without one of their own.
     pub material: Fabric,
-    /// Strain that warp and weft may reach; none where it is the fabric's affair.
+    /// Strain limit of warp and weft; `None` for that of the fabric alone.
     pub strain_limit: Option<StrainLimit>,
-    /// What acts, one after the other.
+    /// The phases, one after the other.
     pub phases: Vec<Phase>,
-    /// Whether a right answer needs cloth to collide with itself.
+    /// Whether the cloth collides with itself.
     pub self_collision: bool,
-    /// How friction holds it where it starts; nothing where it does not come from a state of rest.
+    /// The history of friction at the start; empty unless the scene starts from an equilibrium.
     pub held: Held,
 }
 
 /// A piece of cloth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its vertices.
     pub vertices: Range<usize>,
     /// Its triangles.
     pub triangles: Range<usize>,
-    /// What it is made of, if not of the scene's material.
+    /// Its fabric, if not the scene's material.
     pub material: Option<Fabric>,
     /// Coefficient of friction on the body, if not the body's own.
     pub body_friction: Option<f64>,
@@ -84,10 +83,10 @@ pub struct Panel {
     pub layer: u32,
 }
 
-/// Pairs of vertices that end up at one place.
+/// A seam: pairs of vertices that are sewn together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seam {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The pairs.
     pub pairs: Vec<[u32; 2]>,
@@ -106,7 +105,7 @@ pub struct Seam {
 /// An elastic band along a path of vertices: a waistband, a cuff.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Band {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The vertices along it; neighbours lie on one panel or are sewn together.
     pub vertices: Vec<u32>,
@@ -130,13 +129,13 @@ pub struct SceneBody {
 /// A span of time with one gravity and one air.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// How long it lasts, s.
     pub seconds: f64,
     /// m/s².
     pub gravity: Vector3<f64>,
-    /// What the cloth moves in; none for a vacuum.
+    /// The air; `None` for a vacuum.
     pub air: Option<Air>,
 }
 
@@ -148,19 +147,19 @@ pub enum SceneError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The message of the system.
         why: String,
     },
     /// Not JSON, or not of the form.
     #[error("not a garment-scene-1: {why}")]
     Form {
-        /// What the parser said, with line and column.
+        /// The message of the parser, with line and column.
         why: String,
     },
     /// Another format or version.
     #[error("the format is '{found}', not 'garment-scene-1'")]
     Format {
-        /// What the file calls itself.
+        /// The format that the file states.
         found: String,
     },
     /// Two lists that must be equally long.
@@ -194,7 +193,7 @@ pub enum SceneError {
         seam: String,
         /// Which pair.
         pair: usize,
-        /// What is wrong.
+        /// The fault.
         why: &'static str,
     },
     /// A seam with threads has two lines of vertices and no fold.
@@ -220,7 +219,7 @@ pub enum SceneError {
     BandPath {
         /// The band.
         band: String,
-        /// What is wrong, with the place.
+        /// The fault, with its place.
         why: String,
     },
     /// A material that lacks a value.
@@ -244,7 +243,7 @@ pub enum SceneError {
     /// Another direction up.
     #[error("up is '{found}', but in a scene y is up; turn the scene and its body")]
     Up {
-        /// What the file says.
+        /// The direction that the file states.
         found: String,
     },
     /// Two panels of one name.
@@ -312,7 +311,7 @@ pub enum SceneError {
         /// What to do.
         hint: String,
     },
-    /// A body that is nothing.
+    /// A body without triangles.
     #[error("the body has no triangles; leave it out where there is none")]
     EmptyBody,
     /// A fault of the numbers.

@@ -49,7 +49,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Loaded, SceneError> {
     parse(&load(path)?, &|obj| load(&folder.join(obj)), options)
 }
 
-/// What gives the bytes of the OBJ that a scene names.
+/// Loads the bytes of the OBJ that a scene names.
 pub type Load<'a> = dyn Fn(&str) -> Result<Vec<u8>, SceneError> + 'a;
 
 /// Reads a scene's text; `load` gives the bytes of the OBJ that it names.

@@ -1,8 +1,8 @@
-//! Names of a scene's fields that nothing reads: unknown ones, and those that stand twice.
+//! Finds unknown and duplicate fields of a scene.
 //!
-//! The reader of the values would pass them over or take the last. Method: one walk over the text,
-//! which is known to be JSON; which fields an object has is asked of the structure that it is read
-//! into, so that there is one list. Cost: O(bytes).
+//! The JSON reader would ignore unknown fields and take the last of duplicate ones. Method: one
+//! pass over the text, which is known to be JSON. The known fields come from the structure that an
+//! object is read into, so that there is one list. Cost: O(bytes).
 
 use super::raw::{
     RawAir, RawBand, RawBody, RawContact, RawHeld, RawLimit, RawMaterial, RawPanel, RawPhase, RawScene,
@@ -15,10 +15,10 @@ use std::collections::BTreeSet;
 /// More faults than this have one cause.
 const MAX_FAULTS: usize = 20;
 
-/// The path of whatever stands in a place that nothing reads; it has no end, however deep that is.
+/// The path of everything within an unknown field.
 const NOWHERE: &str = "?";
 
-/// A field that is unknown, or stands twice.
+/// An unknown or duplicate field.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldFault {
     /// Its name.

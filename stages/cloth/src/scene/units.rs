@@ -1,16 +1,16 @@
-//! Lengths that no garment has are those of another unit.
+//! Finds the unit of a scene's lengths.
 //!
-//! A scene is in metres. The OBJ of its body comes from a modelling program and may be in another
-//! unit: where it is larger than any body, the unit is taken in which it fits the cloth. What is
-//! odd otherwise is told or refused, before anything is solved.
+//! A scene is in metres. The OBJ of its body may be in another unit: if it is larger than any body,
+//! the unit in which it fits the cloth best is used. Other implausible lengths are reported or
+//! refused before anything is solved. Cost: O(n).
 
 use super::{Scene, SceneError};
 use nalgebra::Vector3;
 
-/// No body and no cloth of a garment is longer than this, m.
+/// Greatest length of a body or of the cloth, m.
 const LONGEST: f64 = 10.0;
 
-/// What is shorter than this in every direction is no body and no garment, m.
+/// Least length of a body or a garment in its longest direction, m.
 const SHORTEST: f64 = 0.01;
 
 /// Lengths of a body that a unit is found for, m.
@@ -19,14 +19,16 @@ const BODIES: [f64; 2] = [0.05, 5.0];
 /// Units that are tried, in metres, with their names.
 const UNITS: [(f64, &str); 3] = [(0.01, "centimetres"), (0.001, "millimetres"), (0.1, "decimetres")];
 
-/// How many times longer the flat cloth may be than where it starts, and the other way round.
+/// Greatest ratio of the lengths of the flat cloth and of the cloth at the start, either way.
 const REST: f64 = 8.0;
 
-/// How many times longer the cloth may be than its body, and the body than the cloth, before that
-/// is told.
-const BESIDE: (f64, f64) = (5.0, 20.0);
+/// Ratio of the length of the cloth to that of its body above which a warning is given.
+const CLOTH_TO_BODY: f64 = 5.0;
 
-/// Brings the body to metres and tells what is odd.
+/// Ratio of the length of the body to that of the cloth above which a warning is given.
+const BODY_TO_CLOTH: f64 = 20.0;
+
+/// Converts the body to metres and reports implausible lengths.
 pub(super) fn settle(scene: &mut Scene, unit: Option<f64>) -> Result<Vec<String>, SceneError> {
     check_rest(scene)?;
     let cloth = longest(scene.triangles.iter().flatten().map(|&v| scene.positions[v as usize]));
@@ -66,7 +68,7 @@ pub(super) fn settle(scene: &mut Scene, unit: Option<f64>) -> Result<Vec<String>
         body.vertices.iter_mut().for_each(|p| *p *= unit);
     }
     let long = raw * unit;
-    if cloth > BESIDE.0 * long || long > BESIDE.1 * cloth {
+    if cloth > CLOTH_TO_BODY * long || long > BODY_TO_CLOTH * cloth {
         told.push(format!(
             "the body is {long:.3} m long and the cloth {cloth:.3} m: if the body's OBJ is in another unit, name it with `units`"
         ));

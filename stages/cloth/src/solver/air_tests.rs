@@ -110,7 +110,7 @@ fn wind_gives_a_free_sheet_its_momentum_to_the_exact_amount_whatever_the_step() 
             // The first of central differences' steps moves velocities by half of its length.
             let t = if k == 1 { time - first_half(&flown, dt) } else { time };
             let exact = wind - Vec3::new(left(3.0, AIR.tangential, t), 0.0, -left(8.0, AIR.normal, t));
-            // Turns bound the grip by its greatest part: over long steps the lesser one is left by
+            // Iterations bound drag by its greatest part: over long steps the lesser one is left by
             // some of them.
             let left_over = if k == 3 && dt > 0.05 { 5e-4 } else { 1e-7 };
             assert!((v - exact).norm() < left_over, "{} at {dt}: {v} against {exact}", solver.name());
@@ -254,7 +254,7 @@ proptest! {
     /// However the sheet lies and moves, still air takes energy, and the linear step holds as much
     /// as the law.
     #[test]
-    fn air_takes_energy_and_the_grips_add_up_to_the_law(
+    fn air_takes_energy_and_the_drag_tensors_add_up_to_the_law(
         numbers in prop::collection::vec(-3.0..3.0_f64, 24), wind in prop::collection::vec(-20.0..20.0_f64, 3),
     ) {
         let vec = |k: usize| Vec3::new(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]);
@@ -263,12 +263,12 @@ proptest! {
         let power = |f: &[Vec3]| f.iter().zip(&v).map(|(f, v)| f.dot(v)).sum::<f64>();
         let still = AirDrag::new(AIR, &triangles);
         prop_assert!(power(&still.forces(&x, &v)) <= 1e-12);
-        for b in still.grips(&x, &v) {
+        for b in still.drag_tensors(&x, &v) {
             prop_assert!(b.symmetric_eigenvalues().min() >= -1e-12 && (b - b.transpose()).amax() < 1e-12);
         }
         let windy = AirDrag::new(Air { wind: Vec3::new(wind[0], wind[1], wind[2]), ..AIR }, &triangles);
         let law: Vec3 = windy.forces(&x, &v).iter().sum();
-        let held: Vec3 = windy.grips(&x, &v).iter().zip(&v).map(|(b, v)| b * (windy.air.wind - v)).sum();
+        let held: Vec3 = windy.drag_tensors(&x, &v).iter().zip(&v).map(|(b, v)| b * (windy.air.wind - v)).sum();
         prop_assert!((law - held).norm() < 1e-10 * (1.0 + law.norm()));
     }
 }

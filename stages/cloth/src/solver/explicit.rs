@@ -46,7 +46,7 @@ impl CentralDifferences {
         Self { step: Step::Fixed(dt), limit: 0.0, since_look: STEPS_PER_LOOK, last_dt: 0.0 }
     }
 
-    /// Always this step (s), stable or not: to see where motion blows up.
+    /// Always this step (s), stable or not, to show where motion diverges.
     #[must_use]
     pub fn unguarded(dt: f64) -> Self {
         Self { step: Step::Unguarded(dt), limit: 0.0, since_look: 0, last_dt: 0.0 }
@@ -110,7 +110,7 @@ impl Solver for CentralDifferences {
             let damping = model.stiffness(&state.x, Projection::PositiveSemiDefinite).times(&state.v);
             force.iter_mut().zip(&damping).for_each(|(f, d)| *f -= d * model.viscosity);
         }
-        let air = model.air.as_ref().map(|a| (a.air.wind, a.grips(&state.x, &state.v)));
+        let air = model.air.as_ref().map(|a| (a.air.wind, a.drag_tensors(&state.x, &state.v)));
         let (keep, share) = (1.0 - 0.5 * model.drag * reach, 1.0 / (1.0 + 0.5 * model.drag * reach));
         for (v, push) in force.iter().enumerate() {
             if model.fixed[v] {
@@ -118,9 +118,9 @@ impl Solver for CentralDifferences {
                 continue;
             }
             let mut velocity = (state.v[v] * keep + push * (reach / model.masses[v])) * share;
-            if let Some((wind, grips)) = &air {
-                let mobility = mobility(model.masses[v] / share, &grips[v], reach);
-                velocity = carried(&velocity, wind, &mobility, &grips[v], reach);
+            if let Some((wind, drag_tensors)) = &air {
+                let mobility = mobility(model.masses[v] / share, &drag_tensors[v], reach);
+                velocity = carried(&velocity, wind, &mobility, &drag_tensors[v], reach);
             }
             for obstacle in &model.obstacles {
                 velocity = obstacle.stop(&state.x[v], &velocity, dt);

@@ -134,7 +134,7 @@ impl Solver for ImplicitEuler {
         });
         let air = model.air.as_ref().map(|a| AirStep {
             start: &start,
-            grips: a.grips(&start, &state.v),
+            drag_tensors: a.drag_tensors(&start, &state.v),
             wind: a.air.wind,
             dt,
         });

@@ -31,7 +31,7 @@ impl Layout {
     /// The four layouts of the tests.
     pub const ALL: [Self; 4] = [Self::OneDiagonal, Self::Alternating, Self::Equilateral, Self::Irregular(1)];
 
-    /// What it is called in tables.
+    /// Its name in tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

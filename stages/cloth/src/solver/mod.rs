@@ -34,7 +34,7 @@ pub use xpbd::Xpbd;
 
 use crate::error::ClothError;
 
-/// What one call of a solver did.
+/// The report of one call of a solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
     /// Simulated time, s; 0 for a static solution.
@@ -49,7 +49,7 @@ pub struct Report {
 
 /// Something that moves a state on.
 pub trait Solver: Send {
-    /// What it is called in reports.
+    /// Its name in reports.
     fn name(&self) -> &'static str;
 
     /// One step, or all the way to rest.

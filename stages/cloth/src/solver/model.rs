@@ -9,15 +9,15 @@ use crate::linear::BlockMatrix;
 use crate::mesh::{Sheet, check_finite};
 use crate::stopper::Stopper;
 
-/// Masses, energies and what holds them.
+/// Masses, energies and constraints.
 pub struct Model {
-    /// kg per vertex.
+    /// Mass of each vertex, kg.
     pub masses: Vec<f64>,
-    /// m/s².
+    /// Acceleration of gravity, m/s².
     pub gravity: Vec3,
-    /// Everything with a potential, but for gravity.
+    /// All energies but gravity.
     pub energies: Vec<Box<dyn Energy>>,
-    /// Vertices that stay where they are.
+    /// Pinned vertices.
     pub fixed: Vec<bool>,
     /// Mass-proportional drag, 1/s: force -drag m v.
     pub drag: f64,
@@ -25,20 +25,20 @@ pub struct Model {
     pub viscosity: f64,
     /// The air that the sheet moves in; none for a vacuum.
     pub air: Option<AirDrag>,
-    /// Rigid bodies with a closed form, seen by solvers that move vertex by vertex.
+    /// Rigid bodies with a closed form, for solvers that move vertex by vertex.
     pub obstacles: Vec<Box<dyn Obstacle>>,
     /// Asked within steps.
     pub stopper: Stopper,
 }
 
-/// Where the vertices are and how fast they move.
+/// Positions and velocities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// m.
+    /// Positions, m.
     pub x: Vec<Vec3>,
-    /// m/s; of the middle of the last step.
+    /// Velocities, m/s, at the middle of the last step.
     pub v: Vec<Vec3>,
-    /// s.
+    /// Time, s.
     pub time: f64,
 }
 
@@ -85,9 +85,9 @@ impl Model {
     /// Adds the models of a cloth.
     ///
     /// # Errors
-    /// What the models find in a fabric.
+    /// Faults that the models find in a fabric.
     pub fn made_of(mut self, models: Models, cloth: &Cloth<'_>) -> Result<Self, ClothError> {
-        // What holds folds has nothing to hold in a motion.
+        // Bending hysteresis is left out of dynamics.
         let energies = models.energies(cloth)?.into_iter().filter(|e| !e.is_hysteretic());
         self.energies.extend(energies.map(|e| e as Box<dyn Energy>));
         Ok(self)
@@ -96,7 +96,7 @@ impl Model {
     /// Adds the membrane alone.
     ///
     /// # Errors
-    /// What it finds in a fabric.
+    /// Faults that the membrane finds in a fabric.
     pub fn with_membrane(mut self, models: Models, cloth: &Cloth<'_>) -> Result<Self, ClothError> {
         self.energies.push(models.membrane(cloth)?);
         Ok(self)
@@ -174,7 +174,7 @@ impl Model {
         self.elastic_energy(&state.x) + self.weight().value(&state.x) + kinetic
     }
 
-    /// Elastic force and weight on every vertex at `x`, N; what the supports give is not in it.
+    /// Elastic force and weight on every vertex at `x`, N, without reactions of pins.
     #[must_use]
     pub fn forces(&self, x: &[Vec3]) -> Vec<Vec3> {
         let mut gradient = vec![Vec3::zeros(); x.len()];

@@ -1,10 +1,10 @@
 //! Newton's method with line search on a sum of energies.
 //!
-//! Each iteration solves `(H + mu M) d = -g` and walks along d until the energy falls enough
-//! (Armijo). H is the exact Hessian near the minimum, where steps are taken whole, and its positive
-//! part elsewhere. `mu` is a pseudo-time step 1/dt² (pseudo-transient continuation; Kelley and
-//! Keyes, 1998): large far from equilibrium, where a Newton step would fling a soft strip across
-//! the room, and zero near it. Cost: one factor and a handful of energy evaluations an iteration.
+//! Each iteration solves `(H + mu M) d = -g` and shortens d until the energy falls enough (Armijo).
+//! H is the exact Hessian near the minimum, where steps are taken whole, and its positive part
+//! elsewhere. `mu` is a pseudo-time step 1/dt² (pseudo-transient continuation; Kelley and Keyes,
+//! 1998): large far from equilibrium, where the full Newton step of a soft strip would be far too
+//! long, and zero near it. Cost: one factorization and a few energy evaluations an iteration.
 
 use crate::energy::{Energy, Projection, Vec3, matrix_of, total_gradient, total_value, write_matrix};
 use crate::error::ClothError;
@@ -13,7 +13,7 @@ use crate::stopper::Stopper;
 
 /// Share of the predicted fall of energy that a step must reach.
 const ARMIJO: f64 = 1e-4;
-/// Halvings before a direction is given up.
+/// Halvings at most of a direction.
 const MOST_HALVINGS: usize = 24;
 /// A step that energies cannot judge must lower the residual to this share.
 const LEAST_FALL: f64 = 0.5;
@@ -219,7 +219,7 @@ fn largest_ratio(h: &BlockMatrix, masses: &[f64]) -> f64 {
 }
 
 /// The whole step if it halves the residual and the energy rises by no more than its rounding can:
-/// forces then still tell the way.
+/// the residual then still decides.
 fn whole_step(
     energies: &[&dyn Energy],
     x: &[Vec3],
@@ -235,7 +235,7 @@ fn whole_step(
         .then_some((1.0, next, next_value))
 }
 
-/// Walks along `d` until the energy falls by its share; the share of d, the place and the energy
+/// Shortens `d` until the energy falls enough; returns the share of d, the positions and the energy
 /// there.
 fn line_search(
     energies: &[&dyn Energy],

@@ -1,13 +1,13 @@
-//! Projective dynamics (Bouaziz, Martin, Liu, Kavan, Pauly, 2014): implicit Euler by turns of a
-//! local and a global step.
+//! Projective dynamics (Bouaziz, Martin, Liu, Kavan, Pauly, 2014): implicit Euler by alternating
+//! local and global steps.
 //!
 //! Local: each triangle's deformation is taken to the nearest rotation. Global: one linear system
-//! whose matrix never changes, so it is factored once, a number a vertex pair. Membrane
-//! `k A |F - R|² / 2` (isotropic, Poisson's ratio 0, linear in a pull), bending quadratic. Every
-//! turn lowers the energy; the first few do most of it, the rest converge slowly, slower the
-//! stiffer the sheet and the longer the step: `iterations` trades that. The model's energies are
-//! not used; its masses, gravity, drag, air, pins and obstacles are. In air the matrix is factored
-//! anew each step: how firmly the air grips depends on the motion.
+//! whose matrix never changes, so it is factored once, a number a vertex pair. Membrane `k A |F -
+//! R|² / 2` (isotropic, Poisson's ratio 0, linear in a pull), bending quadratic. Every iteration
+//! lowers the energy, most of all the first few; convergence is slower for stiffer sheets and
+//! longer steps. `iterations` trades accuracy for time. The energies of the model are not used; its
+//! masses, gravity, drag, air, pins and obstacles are. In air the matrix is factored anew each
+//! step, for drag depends on the velocity.
 
 use nalgebra::{Matrix3, Matrix3x2, Vector2};
 use rayon::prelude::*;
@@ -35,13 +35,13 @@ pub struct Projective {
     factor: Cholesky,
     fixed: Vec<bool>,
     inertia: Vec<f64>,
-    /// Whether the factor holds the grip of the air in some step.
-    gripped: bool,
+    /// Whether the factor includes the drag of a step.
+    has_air: bool,
 }
 
 impl Projective {
     /// For a sheet of stiffness `k` (N/m) and these masses, pins and drag; steps of `dt` with this
-    /// many turns each.
+    /// many iterations each.
     ///
     /// # Errors
     /// [`ClothError::InvalidParameter`] for dt <= 0 or k < 0; [`ClothError::Factorization`].
@@ -92,12 +92,12 @@ impl Projective {
             factor,
             fixed: model.fixed.clone(),
             inertia,
-            gripped: false,
+            has_air: false,
         })
     }
 
-    /// The grip of the air in a step from `state`, with a factor that bounds it from above: turns
-    /// then go downhill.
+    /// The drag tensors in a step from `state`, with a factor that bounds them from above, so that
+    /// iterations lower the energy.
     fn take_air(
         &mut self,
         air: &AirDrag,
@@ -105,12 +105,12 @@ impl Projective {
         half: &Vec3,
     ) -> Result<Vec<Matrix3<f64>>, ClothError> {
         let last: Vec<Vec3> = state.v.iter().map(|v| v - half).collect();
-        let grips = air.grips(&state.x, &last);
+        let drag_tensors = air.drag_tensors(&state.x, &last);
         let mut bound = self.matrix.clone();
-        bound.add_diagonal(grips.iter().map(|b| b.symmetric_eigenvalues().max().max(0.0) / self.dt));
+        bound.add_diagonal(drag_tensors.iter().map(|b| b.symmetric_eigenvalues().max().max(0.0) / self.dt));
         self.refactor(bound)?;
-        self.gripped = true;
-        Ok(grips)
+        self.has_air = true;
+        Ok(drag_tensors)
     }
 
     fn refactor(&mut self, mut matrix: BlockMatrix) -> Result<(), ClothError> {
@@ -175,11 +175,11 @@ impl Solver for Projective {
             .map(|v| (state.v[v] * dt + model.gravity * (0.5 * dt * dt)) * (model.masses[v] / (dt * dt)))
             .collect();
         let half = model.gravity * (0.5 * dt);
-        let grips = match &model.air {
+        let drag_tensors = match &model.air {
             Some(air) => Some((air.air.wind * dt, self.take_air(air, state, &half)?)),
             None => None,
         };
-        if grips.is_none() && std::mem::take(&mut self.gripped) {
+        if drag_tensors.is_none() && std::mem::take(&mut self.has_air) {
             self.refactor(self.matrix.clone())?;
         }
         let mut residual = 0.0;
@@ -189,8 +189,8 @@ impl Solver for Projective {
             for v in 0..load.len() {
                 load[v] += coast[v] + start[v] * self.inertia[v];
             }
-            if let Some((way, grips)) = &grips {
-                let pull = |v: usize| grips[v] * (start[v] + way - state.x[v]) / dt;
+            if let Some((way, drag_tensors)) = &drag_tensors {
+                let pull = |v: usize| drag_tensors[v] * (start[v] + way - state.x[v]) / dt;
                 load.iter_mut().enumerate().for_each(|(v, l)| *l += pull(v));
             }
             // Solved for the change, so that held vertices need no special right-hand side.

@@ -1,13 +1,13 @@
 //! Extended position-based dynamics with small steps (Macklin, Mueller, Chentanez, 2016; Macklin et
 //! al., 2019).
 //!
-//! Each triangle is one constraint of three strains (weft, warp, shear angle) with the fabric's 3 x
-//! 3 compliance, each inner edge one of its fold angle with the hinge's; one Gauss-Seidel walk a
-//! small step. In the limit of small steps it solves the same equations as the finite elements in
-//! their linear range; at a given cost it is too soft, most of all in long, stiff pieces, because a
-//! walk carries a pull only as far as the vertices are numbered. Never unstable. Cost: one 3 x 3
-//! solve a triangle and step, no matrix. The model's energies are not used; its masses, gravity,
-//! drag, air, pins and obstacles are.
+//! Each triangle is one constraint of three strains (weft, warp, shear angle) with the 3 x 3
+//! compliance of the fabric, and each inner edge one of its fold angle with that of the hinge.
+//! There is one Gauss-Seidel sweep a small step. In the limit of small steps it solves the same
+//! equations as finite elements in their linear range. At a given cost it is too soft, most of all
+//! in long, stiff pieces, because a sweep carries a force only along the order of the vertices. It
+//! is always stable. Cost: one 3 x 3 solve a triangle and step, no matrix. The model's energies are
+//! not used; its masses, gravity, drag, air, pins and obstacles are.
 
 use nalgebra::Matrix3;
 
@@ -42,8 +42,8 @@ impl Xpbd {
     /// For a sheet of this fabric.
     ///
     /// # Errors
-    /// What [`Fabric::check`] finds; [`ClothError::InvalidParameter`] for a sheet with no stiffness
-    /// at all in some direction.
+    /// Every error of [`Fabric::check`]; [`ClothError::InvalidParameter`] for a sheet with no
+    /// stiffness at all in some direction.
     pub fn new(sheet: &Sheet, fabric: &Fabric, dt: f64, substeps: usize) -> Result<Self, ClothError> {
         let woven = Woven::new(fabric)?;
         let stiffness = woven.linear_stiffness();
@@ -66,7 +66,7 @@ impl Xpbd {
         })
     }
 
-    /// One walk over all constraints.
+    /// One sweep over all constraints.
     fn project<W: Answer>(&self, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
         for s in &self.strains {
             s.project(&self.compliance, x, inverse_mass, h);
@@ -88,12 +88,12 @@ impl Xpbd {
                 self.project(&mut state.x, inverse_mass, h);
             }
             Some(air) => {
-                // The air grips what moved in the last step, half a step of gravity behind the
-                // velocities.
+                // Drag depends on the velocity of the last step, half a step of gravity behind the
+                // present one.
                 let last: Vec<Vec3> = state.v.iter().map(|v| v - half).collect();
-                let grips = air.grips(&state.x, &last);
-                let answers = mobilities(model, &grips, h);
-                let blown = |v: usize| carried(&coasting[v], &air.air.wind, &answers[v], &grips[v], h);
+                let drag_tensors = air.drag_tensors(&state.x, &last);
+                let answers = mobilities(model, &drag_tensors, h);
+                let blown = |v: usize| carried(&coasting[v], &air.air.wind, &answers[v], &drag_tensors[v], h);
                 let blown: Vec<Vec3> = (0..coasting.len()).map(blown).collect();
                 advance_free(&mut state.x, &blown, inverse_mass, h);
                 self.project(&mut state.x, &answers, h);
@@ -114,7 +114,7 @@ impl Xpbd {
     }
 }
 
-/// How a vertex answers an impulse, 1/kg: by its mass alone, or with the air that holds it.
+/// The change of velocity of a vertex per impulse, 1/kg: by its mass alone, or with drag.
 trait Answer: Copy {
     /// `a W b`.
     fn between(self, a: &Vec3, b: &Vec3) -> f64;
@@ -148,12 +148,12 @@ fn advance_free(x: &mut [Vec3], velocities: &[Vec3], inverse_mass: &[f64], h: f6
     }
 }
 
-fn mobilities(model: &Model, grips: &[Matrix3<f64>], h: f64) -> Vec<Matrix3<f64>> {
-    let of = |(v, grip): (usize, &Matrix3<f64>)| match model.fixed[v] {
+fn mobilities(model: &Model, drag_tensors: &[Matrix3<f64>], h: f64) -> Vec<Matrix3<f64>> {
+    let of = |(v, drag): (usize, &Matrix3<f64>)| match model.fixed[v] {
         true => Matrix3::zeros(),
-        false => mobility(model.masses[v], grip, h),
+        false => mobility(model.masses[v], drag, h),
     };
-    grips.iter().enumerate().map(of).collect()
+    drag_tensors.iter().enumerate().map(of).collect()
 }
 
 impl StrainTerm {

@@ -1,7 +1,7 @@
-//! Straight to static equilibrium, coarse to fine.
+//! The static solver: brings a garment to static equilibrium on a multilevel mesh.
 //!
-//! Rooms in the order in which they depend on each other: `forces`, `factor`, `levels`, `newton`,
-//! `report`, `drive`. `drive::solve` is where a scene goes in.
+//! Folders in the order in which they depend on each other: `forces`, `factor`, `levels`, `newton`,
+//! `report`, `drive`. The entry point is `drive::solve`.
 
 pub mod drive;
 pub mod factor;

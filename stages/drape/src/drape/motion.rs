@@ -109,9 +109,9 @@ pub(crate) fn moved(
         self_collision: card.is_none_or(|c| c.self_collision),
     };
     let scene = with_phases(scene_of(soft, &setting)?, phases);
-    let skin = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
+    let surface = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
     let friction = card.map_or(0.0, |c| c.friction);
-    let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
+    let engine_collider = surface.as_ref().map(|surface| EngineCollider { surface, friction });
     let until = match phases {
         Some(_) => Until::Phases { longest: time.longest },
         None => course.motion.until,
@@ -121,7 +121,7 @@ pub(crate) fn moved(
     let motion = Motion { until, response, ..course.motion };
     let cancel = cx.cancel().clone();
     let stopper = Stopper::when(move || cancel.is_cancelled());
-    let moved = motion.run_until_stopped(&scene, wearer, &stopper, &mut |p| tell(p, time, cx));
+    let moved = motion.run_until_stopped(&scene, engine_collider, &stopper, &mut |p| tell(p, time, cx));
     cx.check()?;
     let words = Words { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
     let moved = moved.map_err(|e| words.motion(&e, &course.can))?;

@@ -17,7 +17,7 @@ use crate::engine::{self, Rests, SchemeSurface, Setting, Words, crossing, scene_
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-use toile_cloth::contact::skin::CollisionSurface;
+use toile_cloth::contact::collision_surface::CollisionSurface;
 use toile_cloth::statics::drive::solve::{
     Collider as EngineCollider, Equilibrium, LevelReport, StaticEquilibrium as Solver, StaticsError,
 };
@@ -159,8 +159,8 @@ impl StaticEquilibrium {
         };
         let scene = scene_of(garment, &setting)?;
         let friction = card.map_or(0.0, |c| c.friction);
-        let skin = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
-        let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
+        let surface = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
+        let engine_collider = surface.as_ref().map(|surface| EngineCollider { surface, friction });
         let mut progress = Progress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
         let clock = Instant::now();
         let reversed = surely_reversed(&scene, &scene.positions);
@@ -173,8 +173,9 @@ impl StaticEquilibrium {
         }
         let cancel = cx.cancel().clone();
         let stopper = Stopper::when(move || cancel.is_cancelled());
-        let mut result =
-            self.solver().solve_around(&scene, wearer, &[], &stopper, &mut |level| progress.tell(level));
+        let mut result = self
+            .solver()
+            .solve_around(&scene, engine_collider, &[], &stopper, &mut |level| progress.tell(level));
         if let (true, Some(collider), Some(why)) = (self.sew_through, collider, why_again(&result)) {
             let thin = thin_of(collider);
             let around: Vec<&dyn CollisionSurface> =
@@ -186,8 +187,9 @@ impl StaticEquilibrium {
                 // Both ways share the time that the user gives.
                 let solver =
                     Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
-                let second =
-                    solver.solve_around(&scene, wearer, &around, &stopper, &mut |level| progress.tell(level));
+                let second = solver.solve_around(&scene, engine_collider, &around, &stopper, &mut |level| {
+                    progress.tell(level)
+                });
                 if is_better(&second, &result) {
                     result = second;
                 } else {

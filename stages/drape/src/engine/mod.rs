@@ -12,7 +12,7 @@ mod on_body;
 mod pieces;
 mod response;
 mod scene;
-mod skin;
+mod surface;
 mod words;
 
 pub use arithmetic::arithmetic;
@@ -22,5 +22,5 @@ pub use lost::lost;
 pub use on_body::{both, on_body};
 pub use response::check_response;
 pub use scene::{Setting, engine_fabric, garment_of, held_of, scene_of, weld_seams};
-pub use skin::SchemeSurface;
+pub use surface::SchemeSurface;
 pub(crate) use words::{Motions, Rests, Words, crossing, seam, turn_round};

@@ -13,8 +13,8 @@
 use super::SchemeSurface;
 use super::pieces::pieces;
 use nalgebra::Vector3;
+use toile_cloth::contact::collision_surface::CollisionSurface;
 use toile_cloth::contact::past::BodyBox;
-use toile_cloth::contact::skin::CollisionSurface;
 use toile_core::artifact::{Collide, Garment, Point3};
 
 /// Points on a side of the raster in which the body under a piece is looked for.

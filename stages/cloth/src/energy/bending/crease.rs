@@ -13,7 +13,7 @@ use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
-/// What one hinge wants to be.
+/// The rest state of one hinge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Crease {
     fold: Fold,
@@ -21,7 +21,7 @@ struct Crease {
     rest: f64,
 }
 
-/// Hinges that rest folded.
+/// Hinges with a folded rest state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Creases(Vec<Crease>);
 

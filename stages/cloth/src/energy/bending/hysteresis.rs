@@ -1,13 +1,13 @@
-//! Friction between yarns, which holds folds (bending hysteresis): cloth bent and let go keeps part
-//! of its curvature.
+//! Bending hysteresis, by friction between yarns: cloth that was bent keeps a part of its
+//! curvature.
 //!
 //! A measured moment is `B k` plus or minus a frictional couple (Grosberg 1966; half of Kawabata's
-//! hysteresis 2HB), so that a strip's folds rest anywhere within that couple over B of where
-//! stiffness alone would put them. Here each hinge is held near an angle by a potential like that
-//! of friction on the body: a spring where it has hardly turned, the couple where it turns on;
-//! while the cloth moves fast the angle is dragged along. The angle is the fold's share along the
-//! hinge's normal; that the normal turns with the sheet is left out of the derivatives, for a sheet
-//! that hardly stretches curves along its normal alone.
+//! hysteresis 2HB). So the curvature of a strip at rest may differ from that of stiffness alone by
+//! up to the couple over B. Method: each hinge is held near an angle by a potential like that of
+//! friction on the body: a spring at small turns, whose moment approaches the couple at large ones.
+//! The angle moves along while the cloth moves fast. The angle is the component of the fold along
+//! the normal of the hinge. The rotation of the normal is left out of the derivatives, for a sheet
+//! that hardly stretches curves only along its normal. Cost: a few operations a hinge.
 
 use super::quadratic::{Fold, folds};
 use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};
@@ -16,45 +16,44 @@ use crate::mesh::{Edge, Side};
 use nalgebra::{Matrix3, Vector2};
 use rayon::prelude::*;
 
-/// The curvature over which friction comes up, as a share of the couple over the rigidity: at this
-/// way it is 0.7 of the couple, and a small fold is 1 / `SOFT` times stiffer on top of its
-/// rigidity.
+/// The turn at which friction is 0.7 of the couple, as a share of the couple over the rigidity.
+/// Friction adds 1 / `SLIP_TOLERANCE` of its rigidity to the stiffness of a small fold.
 const SLIP_TOLERANCE: f64 = 0.4;
 
-/// How far behind an angle is dragged, in soft ways: friction is then half of its couple, as on the
-/// body.
+/// Turn at which a turning fold drags its angle behind it, in slip tolerances. Friction is then
+/// half of the couple, as on the body.
 const SLIP_RETURN: f64 = 0.577;
 
-/// Hinges of one task.
+/// Hinges per parallel task.
 const TASK: usize = 4096;
 
-/// What holds one hinge.
+/// The friction of one hinge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Hold {
     fold: Fold,
     /// The greatest moment, N m.
     couple: f64,
-    /// The angle over which it comes up, rad.
-    soft: f64,
+    /// The turn at which the moment is 0.7 of the greatest one, rad.
+    tolerance: f64,
 }
 
 /// Friction at every hinge of a sheet.
 #[derive(Debug, Clone)]
 pub struct Hysteresis {
     holds: Vec<Hold>,
-    /// The angles at which it holds, as many; empty until it does.
+    /// The angle of each hinge; empty before they are set.
     held: Vec<f64>,
 }
 
 impl Hysteresis {
-    /// Of a cloth; nothing where no fabric has friction between its yarns. It holds nothing yet.
+    /// Of a cloth, without angles; `None` where no fabric has friction between its yarns.
     #[must_use]
     pub fn new(cloth: &Cloth<'_>) -> Option<Assembled<4, Self>> {
         let sheet = cloth.sheet;
         if (0..sheet.triangles().len()).all(|t| !cloth.fabric_of(t).has_bending_friction()) {
             return None;
         }
-        // The couple over the rigidity of the side's cloth, across the edge, 1/m.
+        // The couple over the rigidity of the fabric of this side, across the edge, 1/m.
         let ratio = |side: &Side| {
             let (r, k) = (&sheet.rest()[side.triangle as usize], side.corner as usize);
             let e = (r[(k + 2) % 3] - r[(k + 1) % 3]).normalize();
@@ -66,7 +65,7 @@ impl Hysteresis {
         let both = |e: &Edge| Some(0.5 * (ratio(&e.sides.0) + ratio(&e.sides.1?)));
         let hold = |(fold, ratio): (Fold, f64)| {
             let couple = fold.stiffness * fold.span * ratio;
-            Hold { fold, couple, soft: SLIP_TOLERANCE * fold.span * ratio }
+            Hold { fold, couple, tolerance: SLIP_TOLERANCE * fold.span * ratio }
         };
         let holds: Vec<Hold> =
             folds(cloth).into_iter().zip(sheet.edges().iter().filter_map(both)).map(hold).collect();
@@ -75,10 +74,10 @@ impl Hysteresis {
 }
 
 impl Hold {
-    /// The way from the held angle in soft ways, and the root of one plus its square.
-    fn way(&self, angle: f64, held: f64) -> (f64, f64) {
-        let way = if self.soft > 0.0 { (angle - held) / self.soft } else { 0.0 };
-        (way, (1.0 + way * way).sqrt())
+    /// The turn from the held angle in slip tolerances, and the root of one plus its square.
+    fn turn(&self, angle: f64, held: f64) -> (f64, f64) {
+        let turn = if self.tolerance > 0.0 { (angle - held) / self.tolerance } else { 0.0 };
+        (turn, (1.0 + turn * turn).sqrt())
     }
 
     fn angle(&self, x: &[Vec3; 4]) -> f64 {
@@ -110,20 +109,21 @@ impl Element<4> for Hysteresis {
 
     fn value(&self, e: usize, x: &[Vec3; 4]) -> f64 {
         let hold = &self.holds[e];
-        hold.couple * hold.soft * (hold.way(hold.angle(x), self.held[e]).1 - 1.0)
+        hold.couple * hold.tolerance * (hold.turn(hold.angle(x), self.held[e]).1 - 1.0)
     }
 
     fn gradient(&self, e: usize, x: &[Vec3; 4]) -> [Vec3; 4] {
         let (hold, normal) = (&self.holds[e], normal(x));
-        let (way, root) = hold.way(hold.fold.curvature(x).dot(&normal), self.held[e]);
-        let moment = normal * (hold.couple * way / root);
+        let (turn, root) = hold.turn(hold.fold.curvature(x).dot(&normal), self.held[e]);
+        let moment = normal * (hold.couple * turn / root);
         hold.fold.weights.map(|w| moment * w)
     }
 
     fn state(&self, e: usize, x: &[Vec3; 4], _: Projection) -> Matrix3<f64> {
         let (hold, normal) = (&self.holds[e], normal(x));
-        let root = hold.way(hold.fold.curvature(x).dot(&normal), self.held[e]).1;
-        let slope = if hold.soft > 0.0 { hold.couple / (hold.soft * root * root * root) } else { 0.0 };
+        let root = hold.turn(hold.fold.curvature(x).dot(&normal), self.held[e]).1;
+        let slope =
+            if hold.tolerance > 0.0 { hold.couple / (hold.tolerance * root * root * root) } else { 0.0 };
         normal * normal.transpose() * slope
     }
 
@@ -148,7 +148,7 @@ impl Element<4> for Hysteresis {
         !self.held.is_empty()
     }
 
-    fn learn(&mut self, elements: &[usize], part: &Self) {
+    fn merge(&mut self, elements: &[usize], part: &Self) {
         if self.acts() {
             elements.iter().zip(&part.held).for_each(|(&e, new)| self.held[e] = *new);
         }
@@ -175,9 +175,9 @@ impl Element<4> for Hysteresis {
     fn drag(&mut self, x: &[Vec3]) {
         let holds = self.holds.par_iter();
         self.held.par_iter_mut().zip(holds).with_min_len(TASK).for_each(|(held, h)| {
-            let most = SLIP_RETURN * h.soft;
-            let way = h.angle(&h.fold.nodes.map(|i| x[i as usize])) - *held;
-            *held += way - way.clamp(-most, most);
+            let most = SLIP_RETURN * h.tolerance;
+            let turn = h.angle(&h.fold.nodes.map(|i| x[i as usize])) - *held;
+            *held += turn - turn.clamp(-most, most);
         });
     }
 }

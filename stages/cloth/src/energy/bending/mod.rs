@@ -1,4 +1,4 @@
-//! What a sheet resists when it is folded.
+//! Bending models: the energy of folds.
 //!
 //! | model | promises | costs |
 //! |---|---|---|

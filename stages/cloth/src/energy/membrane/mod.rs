@@ -1,4 +1,4 @@
-//! What a sheet resists in its plane.
+//! Membrane models: the in-plane energy of a sheet.
 //!
 //! | model | promises | costs |
 //! |---|---|---|

@@ -30,7 +30,7 @@ pub struct Response {
 /// A hyperelastic law of a sheet, by `[u.u, v.v, u.v]`, u and v the images of the rest x axis
 /// (weft) and y axis (warp).
 pub trait Law: Clone + Send + Sync + 'static {
-    /// What it is called in reports.
+    /// Its name in reports.
     fn name(&self) -> &'static str;
 
     /// Energy per rest area, J/m².
@@ -187,7 +187,7 @@ impl<L: Law> Element<3> for Triangles<L> {
         predicted.par_iter_mut().zip(&*triangles).with_min_len(TASK).for_each(predict);
     }
 
-    fn learn(&mut self, elements: &[usize], part: &Self) {
+    fn merge(&mut self, elements: &[usize], part: &Self) {
         if self.predicted.len() == self.triangles.len() {
             elements.iter().zip(&part.predicted).for_each(|(&t, new)| self.predicted[t] = *new);
         }

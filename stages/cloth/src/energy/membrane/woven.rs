@@ -144,7 +144,7 @@ impl Woven {
     /// taken out of it.
     ///
     /// # Errors
-    /// What [`Fabric::check`] finds.
+    /// Every error of [`Fabric::check`].
     pub fn new(fabric: &Fabric) -> Result<Self, ClothError> {
         fabric.check()?;
         Ok(Self::limited(fabric, None))
@@ -166,7 +166,7 @@ impl Woven {
     /// y under tension along x, shear.
     ///
     /// # Errors
-    /// What [`Fabric::check`] finds.
+    /// Every error of [`Fabric::check`].
     pub fn orthotropic(ex: f64, ey: f64, nu_xy: f64, shear: f64) -> Result<Self, ClothError> {
         let mut fabric = Fabric::isotropic(1.0, ey, 0.0, 0.0);
         fabric.weft = Curve::linear(ex);

@@ -1,4 +1,9 @@
-//! A garment on its way to rest: one try, from the coarsest mesh to the finest.
+//! One try of the static solver, from the coarsest mesh level to the finest.
+//!
+//! Method: the coarsest level is sewn, then the levels are relaxed from coarse to fine (see `sew`
+//! and `drape`). Here are the state of the try, the run of one level and the result. Cost: that of
+//! Newton's method on each level (see `newton/to_rest`). Limits: a level that is too coarse for the
+//! body or its seams is reported, and the caller tries again on a finer one (see `solve`).
 
 use crate::error::ClothError;
 use crate::mesh::Sheet;
@@ -6,15 +11,14 @@ use crate::statics::drive::plan::Plan;
 use crate::statics::factor::multifrontal::Halt;
 use crate::statics::forces::clearance::{Clearance, clearance};
 use crate::statics::forces::penetration::pierced;
-use crate::statics::forces::seam_force::{widest, widest_thread};
+use crate::statics::forces::seam_force::{widest, widest_open_seam};
 use crate::statics::forces::system::System;
-use crate::statics::levels::assemble::{KEPT_PULL, strongest};
+use crate::statics::levels::assemble::{KEPT_FORCE, strongest};
 use crate::statics::levels::cloths::pieces_of;
-use crate::statics::levels::pieces::Pieces;
 use crate::statics::newton::to_rest::{NewtonOptions, Outcome, relax};
 use crate::statics::report::equilibrium::{Equilibrium, LevelReport, Progress};
 use crate::statics::report::error::StaticsError;
-use crate::statics::report::intersecting::{Entangled, unsolvable};
+use crate::statics::report::intersecting::{Intersections, unsolvable};
 use crate::statics::report::unbalanced::unbalanced;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -22,44 +26,56 @@ use std::time::Instant;
 
 type Vec3 = Vector3<f64>;
 
-/// How often nodes are moved out where triangles dip into the body.
-const CLEARINGS: usize = 8;
+/// Rounds at most in which nodes are moved out where triangles dip into the body.
+const CLEARANCE_ROUNDS: usize = 8;
 
-/// First step of pseudo-time after that: the cloth hardly moves, s.
-const CLEAR_STEP: f64 = 0.2;
+/// First step of pseudo-time in such a round, in which the cloth hardly moves, s.
+const CLEARANCE_STEP: f64 = 0.2;
 
-/// Most points of a mesh on which the garment is sewn anew because it still crossed itself on a
-/// coarser one: larger ones take long to sew, and what is left may come free while it drapes.
+/// Greatest number of points of a mesh on which the garment is sewn anew because it still
+/// intersects itself on a coarser one. Sewing a larger mesh takes long, and the rest may be
+/// resolved while the garment drapes.
 const MOST_CROSSED: usize = 4000;
 
-/// How the levels ended.
+/// The result of a try.
 pub(crate) enum Draped {
     Equilibrium(Box<Equilibrium>),
-    /// The state carried to a level crosses itself and could not be undone.
-    Tangled(Entangled),
-    /// The body comes through a coarse level between its vertices, or cloth that was sewn on it
-    /// stays crossed.
+    /// The cloth of a level intersects itself, and the intersections could not be resolved.
+    Intersecting(Intersections),
+    /// The body passes through a coarse level between its vertices, or the cloth sewn on it stays
+    /// intersected.
     TooCoarse {
         /// Points of the next finer level.
         finer: usize,
     },
 }
 
-/// A garment on its way to rest.
+/// The mesh of a level during a run.
+#[derive(Clone, Copy)]
+pub(crate) struct LevelMesh<'m> {
+    /// The level index, from fine to coarse.
+    pub(crate) k: usize,
+    /// The open or sewn sheet.
+    pub(crate) sheet: &'m Sheet,
+    /// The places that order the elimination.
+    pub(crate) layout: &'m [Vec3],
+}
+
+/// The state of a try.
 pub(crate) struct Solve<'a> {
     pub(crate) plan: &'a Plan<'a>,
     clock: Instant,
-    /// Where the nodes of the level in work are.
+    /// The positions of the nodes of the present level, m.
     pub(crate) x: Vec<Vec3>,
     pub(crate) joined_at: Option<f64>,
-    /// How deep the cloth at rest dips into the body between its vertices, where that is known, m.
+    /// How deep the final cloth dips into the body between its vertices, where that is known, m.
     dip: Option<f64>,
     pub(crate) reports: Vec<LevelReport>,
     /// Whether cloth passes through cloth while its seams close.
-    pub(crate) through: bool,
-    /// How often the sewn garment crosses itself on the coarsest level.
-    pub(crate) crossed: usize,
-    /// What fell past the body in the last state that was tried, where it did.
+    pub(crate) sews_through: bool,
+    /// Crossings of the sewn garment with itself on the coarsest level.
+    pub(crate) crossings: usize,
+    /// The error of the last state that fell past the body, if any.
     pub(crate) last_fall: Option<StaticsError>,
 }
 
@@ -72,21 +88,21 @@ impl<'a> Solve<'a> {
             joined_at: None,
             dip: None,
             reports: vec![],
-            through: false,
-            crossed: 0,
+            sews_through: false,
+            crossings: 0,
             last_fall: None,
         }
     }
 
-    /// Sews and drapes.
-    pub(crate) fn make(mut self, progress: &mut Progress<'_>) -> Result<Draped, StaticsError> {
+    /// Sews the garment and drapes it.
+    pub(crate) fn run(mut self, progress: &mut Progress<'_>) -> Result<Draped, StaticsError> {
         self.sew(progress)?;
-        let coarsest = self.plan.pieces.len() - 1;
+        let coarsest = self.plan.coarsest_level();
         let sheet = self.plan.pieces[coarsest].sewn_sheet(&self.plan.cloths)?;
-        // What a mesh so coarse does not take out of itself a finer one may.
+        // A finer mesh may resolve the crossings that are left.
         let finer =
             coarsest.checked_sub(1).map(|k| self.plan.pieces[k].points).filter(|n| *n <= MOST_CROSSED);
-        if let Some(finer) = finer.filter(|_| self.crossed > 0) {
+        if let Some(finer) = finer.filter(|_| self.crossings > 0) {
             return Ok(Draped::TooCoarse { finer });
         }
         match self.pierced(coarsest, &sheet, &self.x) {
@@ -95,29 +111,27 @@ impl<'a> Solve<'a> {
         }
     }
 
-    /// Says if the body comes through level `k` with its nodes at `x`; the finest one is judged by
-    /// its end.
+    /// [`Draped::TooCoarse`] if the body passes through level `k` with its nodes at `x`. The finest
+    /// level is judged by its final state.
     pub(crate) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
         let finer = self.plan.pieces.get(k.checked_sub(1)?)?.points;
-        let wearer = self.plan.body?;
-        (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::TooCoarse { finer })
+        let collider = self.plan.body?;
+        (pierced(sheet, collider.surface, x) > 0).then_some(Draped::TooCoarse { finer })
     }
 
-    /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle
-    /// again.
-    pub(crate) fn clear(
+    /// Moves nodes out where triangles between them dip into the body, and relaxes the cloth again.
+    pub(crate) fn restore_clearance(
         &mut self,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        let pace = NewtonOptions { first: CLEAR_STEP, one_by_one: false, ..*pace };
-        for _ in 0..CLEARINGS {
+        let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
+        for _ in 0..CLEARANCE_ROUNDS {
             let Some(Clearance { lacks, depth, triangles }) =
-                self.plan.body.map(|w| clearance(sheet, w.skin, x))
+                self.plan.body.map(|c| clearance(mesh.sheet, c.surface, x))
             else {
                 break;
             };
@@ -125,32 +139,33 @@ impl<'a> Solve<'a> {
                 self.dip = Some(depth);
                 break;
             }
-            if let Some(s) = &mut system.support {
-                s.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
+            if let Some(contact) = &mut system.body_contact {
+                contact.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
-            let report = self.run_free(system, sheet, layout, x, &pace, progress)?;
+            let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
             self.reports.push(report);
         }
         Ok(())
     }
 
+    /// The equilibrium of the finest level, with its nodes at `x`.
     pub(crate) fn finish(
         self,
         mut system: System<'_>,
         sheet: &Sheet,
         x: Vec<Vec3>,
     ) -> Result<Equilibrium, StaticsError> {
-        system.touch(&x);
+        system.update_contacts(&x);
         let unbalanced = unbalanced(&system, &system.gradient(&x), &self.plan.pieces[0]);
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.plan.pieces[0].spread(&x);
         let energy = system.stored(&x);
-        let depth = || self.plan.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
+        let depth = || self.plan.body.map_or(0.0, |c| clearance(sheet, c.surface, &x).depth);
         let (pairs, dip) = rayon::join(|| self.crossings(sheet, &x), || self.dip.unwrap_or_else(depth));
-        let slides = self.plan.pieces[0].spread(&system.held_back(&x));
+        let slides = self.plan.pieces[0].spread(&system.displacements(&x));
         let offsets = self.plan.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
-        let friction_contacts = system.layers.take().map_or_else(Vec::new, |l| l.friction_contacts);
+        let friction_contacts = system.self_contact.take().map_or_else(Vec::new, |c| c.friction_contacts);
         let state = Equilibrium {
             positions,
             outcome,
@@ -172,50 +187,52 @@ impl<'a> Solve<'a> {
         }
     }
 
-    /// How often the sewn garment crosses itself with its nodes at `x`.
+    /// Crossings of the sewn finest level with itself, with its nodes at `x`.
     fn crossings(&self, sheet: &Sheet, x: &[Vec3]) -> usize {
         #[cfg(toile_without = "self_contact")]
         return 0;
         #[cfg(not(toile_without = "self_contact"))]
         match self.plan.scene.self_collision {
-            true => self.plan.tree(sheet, x, false).crossings(x).len(),
+            true => self.plan.tree(0, sheet, x, false).crossings(x).len(),
             false => 0,
         }
     }
 
-    /// Runs one level.
-    #[allow(clippy::too_many_arguments)]
-    pub(crate) fn run(
+    /// Runs Newton's method on one level until it is at rest or `done`.
+    ///
+    /// # Errors
+    /// Cloth falls past the body, time is over, the caller stops, or a step has no solution.
+    pub(crate) fn relax(
         &self,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         done: &dyn Fn(&System<'_>, &[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
-        let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let meets = system.layers.is_some() && !(sewing && self.through);
-        let tree = meets.then(|| self.plan.tree(sheet, layout, sewing));
+        let LevelMesh { k, sheet, layout } = mesh;
+        let sewing = self.joined_at.is_none() && !system.seam_forces.is_empty();
+        let meets = system.self_contact.is_some() && !(sewing && self.sews_through);
+        let tree = meets.then(|| self.plan.tree(k, sheet, layout, sewing));
         let start = Instant::now();
         let meshes = self.plan.pieces.len();
         let mut report = LevelReport {
             nodes: x.len(),
             sewing,
             gap: 0.0,
-            pass: [meshes - self.level_of(x), meshes],
+            pass: [meshes - k, meshes],
             outcome: Outcome::default(),
             seconds: 0.0,
         };
         let (mut stop, mut is_late) = (None, false);
         let piece = if self.plan.body_box.is_some() { pieces_of(system) } else { Vec::new() };
-        let late = || self.clock.elapsed() > self.plan.rest.budget || self.plan.stopper.is_up();
+        let late = || self.clock.elapsed() > self.plan.settings.budget || self.plan.stopper.is_up();
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             let seconds = start.elapsed().as_secs_f64();
-            let gap = if sewing { widest_thread(&system.threads, x) } else { 0.0 };
+            let gap = if sewing { widest_open_seam(&system.seam_forces, x) } else { 0.0 };
             report = LevelReport { gap, outcome: *outcome, seconds, ..report };
-            stop = self.fallen(system, sheet, x, &piece);
+            stop = self.fallen(k, system, sheet, x, &piece);
             if stop.is_none() && progress(&report).is_break() {
                 stop = Some(StaticsError::Stopped);
             }
@@ -226,22 +243,21 @@ impl<'a> Solve<'a> {
                 ControlFlow::Continue(())
             }
         };
-        match relax(system, layout, tree, x, pace, &mut watch, &late) {
+        match relax(system, layout, tree, x, options, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
-            Err(Halt::NotPositive(error)) => return Err(self.unsolvable(error.node, x)),
+            Err(Halt::NotPositive(error)) => return Err(self.unsolvable(k, error.node, x)),
             Err(Halt::Stopped) => is_late = true,
         }
         match stop {
             Some(error) => Err(error),
             None if self.plan.stopper.is_up() => Err(StaticsError::Stopped),
-            None if is_late => Err(self.timeout(x)),
+            None if is_late => Err(self.timeout(k, x)),
             None => Ok(report),
         }
     }
 
-    /// A step from nodes of a level at `x` has no solution because of what is about one of them.
-    fn unsolvable(&self, node: u32, x: &[Vec3]) -> StaticsError {
-        let k = self.level_of(x);
+    /// The error of a step of level `k` from `x` that has no solution near `node`.
+    fn unsolvable(&self, k: usize, node: u32, x: &[Vec3]) -> StaticsError {
         let pieces = &self.plan.pieces[k];
         let is_open = pieces.nodes != x.len();
         let of_node = || pieces.node.iter().position(|n| *n == node).unwrap_or(0);
@@ -249,44 +265,32 @@ impl<'a> Solve<'a> {
         unsolvable(self.plan.scene, self.plan.finest_of(k, vertex as u32) as usize, &x[node as usize])
     }
 
-    /// Out of time with the nodes of a level at `x`.
-    fn timeout(&self, x: &[Vec3]) -> StaticsError {
+    /// The error of a level `k` that is out of time with its nodes at `x`.
+    fn timeout(&self, k: usize, x: &[Vec3]) -> StaticsError {
         let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.plan.pieces.len());
-        StaticsError::Timeout {
-            seconds,
-            level: levels - self.level_of(x),
-            levels,
-            positions: self.carried(x),
-        }
+        StaticsError::Timeout { seconds, level: levels - k, levels, positions: self.prolonged(k, x) }
     }
 
-    /// The level, fine to coarse, that has these nodes, sewn or open.
-    pub(crate) fn level_of(&self, x: &[Vec3]) -> usize {
-        let has = |p: &Pieces| p.nodes == x.len() || p.rest.len() == x.len();
-        self.plan.pieces.iter().position(has).unwrap_or(0)
-    }
-
-    /// The level's nodes, sewn or open, carried to the finest vertices.
-    pub(crate) fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
-        let k = self.level_of(x);
+    /// The positions of the nodes of level `k`, sewn or open, prolonged to the finest vertices.
+    pub(crate) fn prolonged(&self, k: usize, x: &[Vec3]) -> Vec<Vec3> {
         let vertices =
             if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };
         self.plan.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }
 
-    /// Refuses seams that are not joined and stay open at the end.
+    /// Refuses seams that are not joined and are open in the final state.
     pub(crate) fn check_kept(&self, x: &[Vec3]) -> Result<(), StaticsError> {
         let gap = widest(x, &self.plan.pieces[0].kept_pairs());
-        if gap <= self.plan.rest.join_gap {
+        if gap <= self.plan.settings.join_gap {
             return Ok(());
         }
         let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
-        let force = KEPT_PULL * strongest(&self.plan.cloths);
-        let positions = self.carried(x);
+        let force = KEPT_FORCE * strongest(&self.plan.cloths);
+        let positions = self.prolonged(0, x);
         Err(StaticsError::SeamNotClosed { seam, gap, force, reversed: vec![], positions })
     }
 
-    /// Refuses cloth that the strain limit could not hold.
+    /// Refuses cloth that is strained beyond its limit.
     pub(crate) fn check_strain(&self, sheet: &Sheet, x: &[Vec3]) -> Result<(), StaticsError> {
         match self.plan.scene.strain_limit.and_then(|l| sheet.over(x, [l.weft, l.warp])) {
             Some((index, strain, limit)) => {

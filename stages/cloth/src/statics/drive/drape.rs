@@ -1,152 +1,172 @@
-//! The sewn garment comes to rest, level by level and from stiff to limp.
+//! Draping: the sewn garment is brought to equilibrium, level by level.
+//!
+//! Method: each level starts from the state of the coarser one, prolonged to its vertices. With
+//! bending continuation (see `levels/bending_continuation`), each level also lowers the stiffness
+//! of bending. While a level is solved, another thread prepares the next finer one. Only the finest
+//! level must prove that it is at rest. Cost and limits: see `solve`.
 
-use crate::error::ClothError;
-use crate::statics::drive::coarse_to_fine::{Draped, Solve};
+use crate::statics::drive::coarse_to_fine::{Draped, LevelMesh, Solve};
 use crate::statics::drive::held::hold_as;
 use crate::statics::levels::bending_continuation::stages;
 use crate::statics::levels::mesh_level::Level;
-use crate::statics::newton::to_rest::NewtonOptions;
+use crate::statics::newton::to_rest::{NewtonOptions, Proof};
 use crate::statics::report::equilibrium::Progress;
 use crate::statics::report::error::StaticsError;
-use crate::statics::report::intersecting::entangled;
+use crate::statics::report::intersecting::intersections_of;
 
-/// Steps of a state on the way from stiff to limp, and the speed at which it rests, as a share of
-/// that of the end: so near rest, the state forgets where it began.
-const FORGET: (usize, f64) = (60, 0.05);
+/// Newton steps of a state of bending continuation.
+const CONTINUATION_STEPS: usize = 60;
 
-/// How far the middle of a garment without friction may move from where it was placed, as a share
-/// of its size; else it slides off.
+/// Speed at which such a state is at rest, as a share of that of the final state. So near to rest
+/// the state depends no more on where it began.
+const CONTINUATION_SPEED: f64 = 0.05;
+
+/// How far the centre of mass of a garment without friction may move from its initial place, as a
+/// share of its size. A garment that moves farther slides off.
 const MOST_FALL: f64 = 0.1;
 
-/// First and longest step of pseudo-time, s, and the farthest way in a step, m.
-const SPAN: (f64, f64, f64) = (0.05, 1.0, 0.1);
+/// First step of pseudo-time, s.
+const FIRST: f64 = 0.05;
 
-/// First step of pseudo-time on the finest mesh, s: what a coarser one leaves has little speed.
-const FIRST_AT_END: f64 = 0.15;
+/// Longest step of pseudo-time, s.
+const LONGEST: f64 = 1.0;
 
-/// Steps in which cloth that a coarser mesh left on both sides of a sharp edge must come out over
-/// it.
+/// Farthest that a node may move in a step, m.
+const FARTHEST: f64 = 0.1;
+
+/// First step of pseudo-time on the finest level, s: the state of a coarser level has little speed.
+const FIRST_ON_FINEST: f64 = 0.15;
+
+/// Newton steps in which cloth that a coarser level left on both sides of a sharp edge must come
+/// out over it.
 const FREEING: usize = 20;
 
-/// The longest step on the way from stiff to limp, s: what slides without friction takes its time.
-const LONGEST: f64 = 10.0;
+/// Longest step of pseudo-time of bending continuation, s: cloth without friction slides slowly.
+const LONGEST_CONTINUATION: f64 = 10.0;
+
+/// How far a level has come in bending continuation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Continued {
+    /// How many times stiffer bending is than that of the fabric.
+    pub(crate) stiff: f64,
+    /// Whether the level was solved without friction.
+    pub(crate) frictionless: bool,
+}
 
 impl<'a> Solve<'a> {
-    /// Lets the sewn garment come to rest.
+    /// Brings the sewn garment to equilibrium.
     pub(crate) fn drape(mut self, progress: &mut Progress<'_>) -> Result<Draped, StaticsError> {
         let plan = self.plan;
-        let (mut bending, mut slides) = ((1.0, false), Vec::new());
-        let mut ready = plan.level(plan.pieces.len() - 1);
-        for k in (0..plan.pieces.len()).rev() {
-            let mut level = ready?;
-            let is_handed = k + 1 < plan.pieces.len() || plan.rest.from_here;
-            level.begin(std::mem::take(&mut self.x), slides, is_handed);
-            if plan.rest.from_here && !plan.scene.held.is_empty() {
+        let (mut continued, mut slides) = (Continued { stiff: 1.0, frictionless: false }, Vec::new());
+        let mut k = plan.coarsest_level();
+        let mut level = plan.level(k)?;
+        loop {
+            let is_prolonged = k < plan.coarsest_level() || plan.settings.from_here;
+            level.begin(std::mem::take(&mut self.x), std::mem::take(&mut slides), is_prolonged);
+            if plan.settings.from_here && !plan.scene.held.is_empty() {
                 hold_as(&plan.scene.held, &mut level.system, &plan.pieces[k], &level.x);
             }
-            // Another thread makes the next finer level ready meanwhile; below the finest there is
-            // none, and nobody asks.
-            ready = Err(ClothError::EmptyScene.into());
+            let mut finer = None;
+            // Another thread prepares the next finer level meanwhile.
             let is_free = rayon::in_place_scope(|scope| {
                 if k > 0 {
-                    scope.spawn(|_| ready = plan.level(k - 1));
+                    scope.spawn(|_| finer = Some(plan.level(k - 1)));
                 }
-                // What was sewn through itself has no start that is free of crossings: a finer mesh
-                // may come over the edge.
-                if !self.free(k, &mut level, progress)? && !plan.rest.sew_through {
+                // Cloth that was sewn through itself cannot start anew without crossings: a finer
+                // level may come out over the edge.
+                if !self.free_of_ridges(k, &mut level, progress)? && !plan.settings.sew_through {
                     return Ok(false);
                 }
-                self.bring(k, &mut level, &mut bending, progress).map(|()| true)
+                self.solve_level(k, &mut level, &mut continued, progress).map(|()| true)
             })?;
             if !is_free {
                 return Ok(Draped::TooCoarse { finer: plan.pieces[k].points });
             }
-            // What was sewn through itself may come free on a finer mesh; nothing is gained by
-            // sewing it there anew.
-            if level.system.is_tangled() && (k == 0 || !plan.rest.sew_through) {
-                return Ok(Draped::Tangled(entangled(&plan.pieces[k], &level)));
+            // Crossings of cloth that was sewn through itself may be resolved on a finer level;
+            // sewing it there anew gains nothing.
+            if level.system.is_intersecting() && (k == 0 || !plan.settings.sew_through) {
+                return Ok(Draped::Intersecting(intersections_of(&plan.pieces[k], &level)));
             }
             if let Some(pierced) = self.pierced(k, &level.sheet, &level.x) {
                 return Ok(pierced);
             }
-            if k == 0 {
+            let Some(finer) = finer else {
                 self.check_kept(&level.x)?;
                 self.check_strain(&level.sheet, &level.x)?;
-                return Ok(Draped::Equilibrium(Box::new(self.finish(
-                    level.system,
-                    &level.sheet,
-                    level.x,
-                )?)));
-            }
-            slides = plan.finer(k, &level.system.held_back(&level.x));
+                let state = self.finish(level.system, &level.sheet, level.x)?;
+                return Ok(Draped::Equilibrium(Box::new(state)));
+            };
+            slides = plan.finer(k, &level.system.displacements(&level.x));
             self.x = plan.finer(k, &level.x);
+            level = finer?;
+            k -= 1;
         }
-        Err(ClothError::EmptyScene.into())
     }
 
-    /// Lets level `k` come out over sharp edges and corners of the body that its coarser mesh came
-    /// to lie on both sides of; whether it has. From its own start no mesh comes to cross one.
-    fn free(
+    /// Lets level `k` come out over the sharp edges and corners of the body that pass through it;
+    /// returns whether it has. Only the state of a coarser level can be so.
+    fn free_of_ridges(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
         progress: &mut Progress<'_>,
     ) -> Result<bool, StaticsError> {
-        if k + 1 == self.plan.pieces.len() || !level.system.is_pierced(&level.x) {
+        if k == self.plan.coarsest_level() || !level.system.is_pierced(&level.x) {
             return Ok(true);
         }
-        self.settle(level, 1.0, NewtonOptions { steps: FREEING, ..self.pace() }, progress)?;
+        self.settle(k, level, 1.0, NewtonOptions { steps: FREEING, ..self.options() }, progress)?;
         Ok(!level.system.is_pierced(&level.x))
     }
 
-    /// Brings level `k` near rest, the finest one to rest. `bending` is how many times stiffer it
-    /// was left by the level before, and whether without friction.
-    fn bring(
+    /// Brings level `k` near rest, and the finest level to rest. `continued` is how far the coarser
+    /// level came, and then how far this level has come.
+    fn solve_level(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
-        bending: &mut (f64, bool),
+        continued: &mut Continued,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        let (stiff, loose) = *bending;
-        if let Some(grade) = self.plan.grade(level.size()) {
-            let end = if k == 0 { 1.0 } else { grade.resolved(level.edge()) };
-            *bending = if k + 1 == self.plan.pieces.len() {
-                self.forget(k, level, grade.first(), end, progress)?
+        if let Some(continuation) = self.plan.continuation(level.size()) {
+            let end = if k == 0 { 1.0 } else { continuation.resolved(level.edge()) };
+            let Continued { stiff, frictionless } = *continued;
+            *continued = if k == self.plan.coarsest_level() {
+                self.initial_equilibrium(k, level, continuation.first(), end, progress)?
             } else {
-                (self.carry_on(k, level, [stiff, end.min(stiff)], loose, progress)?, loose)
+                let stiff = self.continue_level(k, level, [stiff, end.min(stiff)], frictionless, progress)?;
+                Continued { stiff, frictionless }
             };
         } else if k > 0 {
-            let pace = NewtonOptions { one_by_one: self.begins_with_pile(k), ..self.pace() };
-            self.settle(level, 1.0, pace, progress)?;
+            let options = NewtonOptions { one_by_one: self.starts_one_by_one(k), ..self.options() };
+            self.settle(k, level, 1.0, options, progress)?;
         }
-        if k == 0 { self.end(level, progress) } else { Ok(()) }
+        if k == 0 { self.solve_finest(level, progress) } else { Ok(()) }
     }
 
-    /// Brings a finer level from one stiffness to another, without friction if it stays; the
-    /// stiffness reached.
-    fn carry_on(
+    /// Brings a finer level from one stiffness to another, if it stays on the body without friction
+    /// then so; returns the stiffness reached.
+    fn continue_level(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
-        way: [f64; 2],
-        loose: bool,
+        range: [f64; 2],
+        frictionless: bool,
         progress: &mut Progress<'_>,
     ) -> Result<f64, StaticsError> {
         let mut free = level.clone();
-        if loose {
+        if frictionless {
             free.disable_friction();
         }
-        if self.continue_to(k, &mut free, way, progress)? {
+        if self.continue_to(k, &mut free, range, progress)? {
             *level = free;
-        } else if loose {
-            self.continue_to(k, level, way, progress)?;
+        } else if frictionless {
+            self.continue_to(k, level, range, progress)?;
         }
-        Ok(way[1])
+        Ok(range[1])
     }
 
-    /// Lets the bending of level `k` go from one factor to another, and gives friction back;
-    /// whether the garment stays.
+    /// Lowers the bending of level `k` from one factor to another, then enables friction; returns
+    /// whether the garment stays on the body.
     pub(crate) fn continue_to(
         &mut self,
         k: usize,
@@ -155,33 +175,34 @@ impl<'a> Solve<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<bool, StaticsError> {
         let mut stages = stages(from, to);
-        // The last stage of the finest level is its end.
+        // The last stage of the finest level is solved by `solve_finest`.
         if k == 0 {
             stages.pop();
         } else if stages.is_empty() {
             stages.push(to);
         }
         for stage in stages {
-            if !self.stays(level, stage, self.forgetful(), progress)? {
+            if !self.stays(k, level, stage, self.continuation_options(), progress)? {
                 return Ok(false);
             }
         }
         if level.enable_friction() && k > 0 {
-            self.settle(level, to, self.forgetful(), progress)?;
+            self.settle(k, level, to, self.continuation_options(), progress)?;
         }
         Ok(true)
     }
 
-    /// Brings a level near rest; whether it stays on the body. With friction only a fall past the
-    /// body says that it does not.
+    /// Brings level `k` near rest; returns whether it stays on the body. With friction only a fall
+    /// past the body shows that it does not.
     pub(crate) fn stays(
         &mut self,
+        k: usize,
         level: &mut Level<'a>,
         stiff: f64,
-        pace: NewtonOptions,
+        options: NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<bool, StaticsError> {
-        match self.settle(level, stiff, pace, progress) {
+        match self.settle(k, level, stiff, options, progress) {
             Ok(()) if level.friction.is_some() => Ok(level.moved() < MOST_FALL * level.size()),
             Ok(()) => Ok(true),
             Err(StaticsError::FallsPast(fallen)) if !fallen.is_certain => {
@@ -192,75 +213,81 @@ impl<'a> Solve<'a> {
         }
     }
 
-    /// Brings a level near rest with bending so many times stiffer.
+    /// Brings level `k` near rest with bending `stiff` times stiffer.
     fn settle(
         &mut self,
+        k: usize,
         level: &mut Level<'a>,
         stiff: f64,
-        pace: NewtonOptions,
+        options: NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
         level.system.elastic.scale_bending(stiff);
         let offsets =
-            level.system.support.as_mut().filter(|_| self.plan.rest.bending_continuation).map(|s| {
-                s.grows = true;
-                s.offsets.clone()
+            level.system.body_contact.as_mut().filter(|_| self.plan.settings.bending_continuation).map(|c| {
+                c.grows_offsets = true;
+                c.offsets.clone()
             });
         let Level { system, sheet, layout, x, .. } = &mut *level;
-        let run = self.run_free(system, sheet, layout, x, &pace, progress);
-        if let (Some(s), Some(offsets)) = (&mut level.system.support, offsets) {
-            (s.grows, s.offsets) = (false, offsets);
+        let run = self.relax_uncrossed(LevelMesh { k, sheet, layout }, system, x, &options, progress);
+        if let (Some(contact), Some(offsets)) = (&mut level.system.body_contact, offsets) {
+            (contact.grows_offsets, contact.offsets) = (false, offsets);
         }
         level.system.elastic.scale_bending(1.0 / stiff);
         self.reports.push(run?);
         Ok(())
     }
 
-    /// Brings the finest level to rest, and proves it.
-    fn end(&mut self, level: &mut Level<'a>, progress: &mut Progress<'_>) -> Result<(), StaticsError> {
-        let (steps, speed) = (self.plan.rest.finest_steps, self.plan.rest.speed);
-        let one_by_one = self.begins_with_pile(0);
-        let pace =
-            NewtonOptions { first: FIRST_AT_END, steps, speed, prove: true, one_by_one, ..self.pace() };
+    /// Brings the finest level to rest, and proves that it is.
+    fn solve_finest(
+        &mut self,
+        level: &mut Level<'a>,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), StaticsError> {
+        let (steps, speed) = (self.plan.settings.finest_steps, self.plan.settings.speed);
+        let proof = Proof::of(self.plan.settings.long_proof);
+        let one_by_one = self.starts_one_by_one(0);
+        let options =
+            NewtonOptions { first: FIRST_ON_FINEST, steps, speed, proof, one_by_one, ..self.options() };
         let Level { system, sheet, layout, x, .. } = level;
-        let report = self.run_free(system, sheet, layout, x, &pace, progress)?;
+        let mesh = LevelMesh { k: 0, sheet, layout };
+        let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
         self.reports.push(report);
-        self.clear(system, sheet, layout, x, &pace, progress)
+        self.restore_clearance(mesh, system, x, &options, progress)
     }
 
-    /// Whether level `k` is where cloths are laid down one by one: finer ones start from a pile.
-    fn begins_with_pile(&self, k: usize) -> bool {
-        self.plan.is_pile && k + 1 == self.plan.pieces.len()
+    /// Whether the cloths of a stack start one by one on level `k`. Finer levels start from the
+    /// stack.
+    fn starts_one_by_one(&self, k: usize) -> bool {
+        self.plan.is_stack && k == self.plan.coarsest_level()
     }
 
-    /// The pace of all but the end.
-    pub(crate) fn pace(&self) -> NewtonOptions {
-        let (first, longest, farthest) = SPAN;
-        let (steps, speed) = (self.plan.rest.coarse_steps, 2.0 * self.plan.rest.speed);
+    /// The options of all runs but the last.
+    pub(crate) fn options(&self) -> NewtonOptions {
+        let (steps, speed) = (self.plan.settings.coarse_steps, 2.0 * self.plan.settings.speed);
         NewtonOptions {
-            first,
-            longest,
+            first: FIRST,
+            longest: LONGEST,
             steps,
             speed,
-            non_static: self.plan.rest.non_static,
-            farthest,
-            prove: false,
-            long_proof: self.plan.rest.long_proof,
-            rough: false,
-            yields: self.plan.rest.sew_through,
+            non_static: self.plan.settings.non_static,
+            farthest: FARTHEST,
+            proof: Proof::AnyStep,
+            skip_line_search: false,
+            holds_stopped: self.plan.settings.sew_through,
             one_by_one: false,
-            asleep: self.plan.rest.asleep,
-            precision: self.plan.rest.precision,
+            asleep: self.plan.settings.asleep,
+            precision: self.plan.settings.precision,
         }
     }
 
-    /// The pace of a state on the way from stiff to limp.
-    pub(crate) fn forgetful(&self) -> NewtonOptions {
+    /// The options of a state of bending continuation.
+    pub(crate) fn continuation_options(&self) -> NewtonOptions {
         NewtonOptions {
-            longest: LONGEST,
-            steps: FORGET.0,
-            speed: FORGET.1 * self.plan.rest.speed,
-            ..self.pace()
+            longest: LONGEST_CONTINUATION,
+            steps: CONTINUATION_STEPS,
+            speed: CONTINUATION_SPEED * self.plan.settings.speed,
+            ..self.options()
         }
     }
 }

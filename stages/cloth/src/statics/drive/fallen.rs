@@ -1,4 +1,6 @@
-//! Tells cloth that has fallen past the body from cloth that is on its way.
+//! Tells cloth that has fallen past the body from cloth that is still falling onto it.
+//!
+//! Method: see `contact/past`. Cost: O(n) a step.
 
 use crate::contact::past::{Fallen, Start, list};
 use crate::mesh::Sheet;
@@ -11,7 +13,7 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// The panels of a scene's vertices that have fallen, as a list for people.
+/// The panels that have fallen, as a list for messages.
 pub(crate) fn list_of(scene: &Scene, is_fallen: &[bool]) -> String {
     let count = |p: &crate::scene::Panel| is_fallen[p.vertices.clone()].iter().filter(|f| **f).count();
     let panels = scene.panels.iter().map(|p| (p.name.as_str(), count(p), p.vertices.len()));
@@ -19,10 +21,11 @@ pub(crate) fn list_of(scene: &Scene, is_fallen: &[bool]) -> String {
 }
 
 impl Solve<'_> {
-    /// The error of cloth that is past the body, if any of a level's nodes at `x` is. `piece` is
-    /// that of each node.
+    /// The error of cloth that has fallen past the body, if any node of level `k` at `x` has.
+    /// `piece` is the piece of each node.
     pub(crate) fn fallen(
         &self,
+        k: usize,
         system: &System<'_>,
         sheet: &Sheet,
         x: &[Vec3],
@@ -35,9 +38,8 @@ impl Solve<'_> {
         if past.is_empty() {
             return None;
         }
-        let k = self.level_of(x);
         let node = &self.plan.pieces[k].node;
-        // A piece of the scene, whose vertices are all of it: a coarse level keeps some of them.
+        // Pieces of the scene, with all vertices: a coarse level keeps only some of them.
         let whole = pieces_of_scene(self.plan.scene);
         let mut fallen: Vec<u32> = (0..node.len())
             .filter(|&v| is_past(node[v] as usize))
@@ -54,7 +56,8 @@ impl Solve<'_> {
             cloth: list_of(self.plan.scene, &is_fallen),
             start,
             body: body.height(),
-            is_certain: start != Start::Around || !self.plan.rest.bending_continuation && body.resolves(edge),
+            is_certain: start != Start::Around
+                || !self.plan.settings.bending_continuation && body.resolves(edge),
         })))
     }
 }

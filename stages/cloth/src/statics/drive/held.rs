@@ -1,4 +1,5 @@
-//! A garment goes on from what friction held when it came to rest.
+//! Goes on from the friction of an equilibrium: displacements, offsets, folds and contacts. Cost:
+//! O(n).
 
 use crate::contact::friction::FrictionContact;
 use crate::scene::Held;
@@ -10,7 +11,7 @@ use nalgebra::Vector3;
 type Vec3 = Vector3<f64>;
 
 impl Equilibrium {
-    /// What friction holds in this state.
+    /// The history of friction in this state.
     #[must_use]
     pub fn held(&self) -> Held {
         Held {
@@ -22,18 +23,18 @@ impl Equilibrium {
     }
 }
 
-/// Has the nodes of the finest level at `x` held as a solver left them.
+/// Gives the nodes of the finest level at `x` the history of friction that a solver left.
 pub(crate) fn hold_as(held: &Held, system: &mut System<'_>, pieces: &Pieces, x: &[Vec3]) {
     let vertices = pieces.rest.len();
     if held.slides.len() == vertices {
         system.slides = pieces.sew(&held.slides, &vec![1.0; vertices]);
     }
-    if let Some(s) = system.support.as_mut().filter(|_| held.offsets.len() == vertices) {
-        pieces.node.iter().zip(&held.offsets).for_each(|(&n, o)| s.offsets[n as usize] = *o);
+    if let Some(contact) = system.body_contact.as_mut().filter(|_| held.offsets.len() == vertices) {
+        pieces.node.iter().zip(&held.offsets).for_each(|(&n, o)| contact.offsets[n as usize] = *o);
     }
-    if let Some(layers) = &mut system.layers {
+    if let Some(self_contact) = &mut system.self_contact {
         let known = |c: &&FrictionContact| c.nodes.iter().all(|&i| (i as usize) < x.len());
-        layers.friction_contacts = held.contacts.iter().filter(known).copied().collect();
+        self_contact.friction_contacts = held.contacts.iter().filter(known).copied().collect();
     }
     system.elastic.hold(x, false);
     system.elastic.hold_at(&held.folds);

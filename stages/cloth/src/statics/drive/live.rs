@@ -1,10 +1,11 @@
-//! A garment that stays at rest while its fabric, its pins or its wearer change.
+//! A garment that is kept in equilibrium while its fabric, its pins or its collider change.
 //!
-//! All that [`StaticEquilibrium`] knows of the finest level is kept: places, friction's anchors,
-//! near pairs, the order of elimination. A small change needs one or two of Newton's steps to
-//! follow, each a factorization and O(n) more; when the changes stop, [`Live::settle`] goes on to
-//! rest, which is proved as always. Mesh and seams stay as they are. Since friction and folds
-//! remember, the state may be another one than a fresh start would find; both are states of rest.
+//! Method: the state of the finest level is kept: positions, friction anchors, neighbour pairs and
+//! the order of elimination. After a small change one or two Newton steps suffice. When the changes
+//! stop, [`Live::settle`] goes on until rest is proved.
+//!
+//! Cost of a step: one factorization, and O(n) for the rest. Limits: mesh and seams must stay.
+//! Since friction and folds have a history, the equilibrium may differ from that of a fresh start.
 
 use crate::mesh::Sheet;
 use crate::scene::Scene;
@@ -13,9 +14,9 @@ use crate::statics::drive::solve::{Equilibrium, LevelReport, Progress, StaticEqu
 use crate::statics::factor::multifrontal::Halt;
 use crate::statics::forces::clearance::clearance;
 use crate::statics::forces::system::System;
-use crate::statics::levels::assemble::{Collider, assemble, cloths, kept_threads};
+use crate::statics::levels::assemble::{Collider, assemble, cloths, kept_seam_forces};
 use crate::statics::levels::pieces::Pieces;
-use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, Outcome, greatest};
+use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, Outcome, Proof, greatest};
 use crate::statics::report::unbalanced::unbalanced;
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -23,33 +24,33 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// First step of pseudo-time of a garment that was at rest, s.
+/// First step of pseudo-time, of a garment that was at rest, s.
 const FIRST: f64 = 0.2;
 
-/// Farthest that a node may move in a step, m: a change is followed, not fallen after.
+/// Farthest that a node may move in a step, m.
 const FARTHEST: f64 = 0.05;
 
-/// A garment that can be changed.
+/// A garment in equilibrium that can be changed.
 pub struct Live<'a> {
-    rest: StaticEquilibrium,
+    settings: StaticEquilibrium,
     scene: Scene,
-    wearer: Option<Collider<'a>>,
+    collider: Option<Collider<'a>>,
     pieces: Pieces,
     sheet: Sheet,
     system: System<'a>,
-    descent: NewtonState,
+    newton: NewtonState,
     x: Vec<Vec3>,
 }
 
 impl<'a> Live<'a> {
-    /// Goes on from `state`, a state of rest of `scene` on `wearer`.
+    /// Starts from `state`, an equilibrium of `scene` on `collider`.
     ///
     /// # Errors
     /// [`StaticsError`], where the scene is at fault or the state has another number of vertices.
     pub fn new(
-        rest: StaticEquilibrium,
+        settings: StaticEquilibrium,
         scene: Scene,
-        wearer: Option<Collider<'a>>,
+        collider: Option<Collider<'a>>,
         state: &Equilibrium,
     ) -> Result<Self, StaticsError> {
         scene.check()?;
@@ -59,24 +60,24 @@ impl<'a> Live<'a> {
         }
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene))?;
-        let mut system = assemble(&scene, wearer, &pieces, &sheet, false, rest.models)?;
-        system.threads = kept_threads(&scene, &pieces, rest.join_gap);
+        let mut system = assemble(&scene, collider, &pieces, &sheet, false, settings.models)?;
+        system.seam_forces = kept_seam_forces(&scene, &pieces, settings.join_gap);
         let even = vec![1.0; scene.rest.len()];
         let x = pieces.sew(&state.positions, &even);
         hold_as(&state.held(), &mut system, &pieces, &x);
         let layout = pieces.sew(&scene.positions, &even);
         let tree = scene.self_collision.then(|| ClothTree::new(sheet.triangles(), &layout));
-        let descent = NewtonState::new(&mut system, &layout, tree, &x, FIRST);
-        Ok(Self { rest, scene, wearer, pieces, sheet, system, descent, x })
+        let newton = NewtonState::new(&mut system, &layout, tree, &x, FIRST);
+        Ok(Self { settings, scene, collider, pieces, sheet, system, newton, x })
     }
 
-    /// The scene as it is now.
+    /// The present scene.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Where every vertex of the scene is, m.
+    /// The positions of all vertices of the scene, m.
     #[must_use]
     pub fn positions(&self) -> Vec<Vec3> {
         self.pieces.spread(&self.x)
@@ -99,159 +100,159 @@ impl<'a> Live<'a> {
         if !same_mesh || !same_panels || scene.seams != self.scene.seams {
             return Err(StaticsError::Reshaped);
         }
-        if let (Some(wearer), Some(body)) = (&mut self.wearer, &scene.body) {
-            wearer.friction = body.friction;
+        if let (Some(collider), Some(body)) = (&mut self.collider, &scene.body) {
+            collider.friction = body.friction;
         }
         self.scene = scene;
         self.renew()
     }
 
-    /// Puts the garment on another body near the present one.
+    /// Replaces the collider by one near it.
     ///
     /// # Errors
     /// [`StaticsError`], where the scene is at fault.
-    pub fn wear(&mut self, wearer: Option<Collider<'a>>) -> Result<(), StaticsError> {
-        self.wearer = wearer;
-        self.system.seen.clear();
+    pub fn set_collider(&mut self, collider: Option<Collider<'a>>) -> Result<(), StaticsError> {
+        self.collider = collider;
+        self.system.distance_cache.clear();
         self.renew()
     }
 
-    /// Leads a pinned vertex to `to` with the next steps; returns whether it is pinned.
+    /// Moves a pinned vertex to `to` within the next steps; returns whether it is pinned.
     pub fn pull(&mut self, vertex: u32, to: Vec3) -> bool {
         let node = self.pieces.node.get(vertex as usize).copied().filter(|n| self.system.pinned[*n as usize]);
         let Some(node) = node else { return false };
-        self.system.pulls.retain(|(n, _)| *n != node);
-        self.system.pulls.push((node, to));
-        self.descent.wake();
+        self.system.targets.retain(|(n, _)| *n != node);
+        self.system.targets.push((node, to));
+        self.newton.wake();
         true
     }
 
-    /// Takes up the changed scene, keeping what the last steps found.
+    /// Takes over the changed scene, and keeps the state of the last steps.
     fn renew(&mut self) -> Result<(), StaticsError> {
         self.pieces.pinned.fill(false);
         self.scene.pinned.iter().for_each(|&p| self.pieces.pinned[p as usize] = true);
         self.sheet = self.pieces.sewn_sheet(&cloths(&self.scene))?;
-        let mut new = assemble(&self.scene, self.wearer, &self.pieces, &self.sheet, false, self.rest.models)?;
-        new.threads = kept_threads(&self.scene, &self.pieces, self.rest.join_gap);
+        let mut new =
+            assemble(&self.scene, self.collider, &self.pieces, &self.sheet, false, self.settings.models)?;
+        new.seam_forces = kept_seam_forces(&self.scene, &self.pieces, self.settings.join_gap);
         let old = &mut self.system;
         new.elastic.hold(&self.x, false);
         new.elastic.hold_at(old.elastic.held());
         std::mem::swap(&mut new.anchors, &mut old.anchors);
         std::mem::swap(&mut new.loads, &mut old.loads);
-        std::mem::swap(&mut new.seen, &mut old.seen);
-        if let (Some(new), Some(old)) = (&mut new.support, &mut old.support) {
+        std::mem::swap(&mut new.distance_cache, &mut old.distance_cache);
+        if let (Some(new), Some(old)) = (&mut new.body_contact, &mut old.body_contact) {
             new.offsets.iter_mut().zip(&old.offsets).for_each(|(new, old)| *new = new.max(*old));
         }
-        if let (Some(new), Some(old)) = (&mut new.layers, &mut old.layers) {
+        if let (Some(new), Some(old)) = (&mut new.self_contact, &mut old.self_contact) {
             std::mem::swap(&mut new.pairs, &mut old.pairs);
             std::mem::swap(&mut new.friction_contacts, &mut old.friction_contacts);
         }
         if let (Some(new), Some(old)) = (&mut new.ridges, &old.ridges) {
-            new.go_on(old);
+            new.continue_from(old);
         }
-        new.pulls = old.pulls.iter().filter(|(n, _)| new.pinned[*n as usize]).copied().collect();
+        new.targets = old.targets.iter().filter(|(n, _)| new.pinned[*n as usize]).copied().collect();
         self.system = new;
-        self.descent.renew(&mut self.system);
+        self.newton.renew(&mut self.system);
         Ok(())
     }
 
-    /// Up to `steps` of Newton's steps towards rest; none where it is at rest already. The last one
-    /// is short: it takes away the strain that long ones leave. The residual is that of the state
-    /// it ends in.
+    /// Makes up to `steps` Newton steps towards rest; none if the garment is at rest. The last step
+    /// is short: it removes the strain that long steps leave. The residual is that of the final
+    /// state.
     ///
     /// # Errors
     /// [`StaticsError::NotPositive`], where no inertia makes the matrix positive definite.
     pub fn follow(&mut self, steps: usize) -> Result<Outcome, StaticsError> {
-        let pace = self.pace();
+        let options = self.options();
         for left in (0..steps).rev() {
-            if self.descent.outcome().at_rest {
+            if self.newton.outcome().at_rest {
                 break;
             }
             if left == 0 {
-                self.descent.shorten_next();
+                self.newton.shorten_next();
             }
-            self.step(&pace, &|| false)?;
+            self.step(&options, &|| false)?;
         }
-        self.system.touch(&self.x);
+        self.system.update_contacts(&self.x);
         let residual = greatest(&self.system.gradient(&self.x));
-        Ok(Outcome { residual, ..self.descent.outcome() })
+        Ok(Outcome { residual, ..self.newton.outcome() })
     }
 
-    fn pace(&self) -> NewtonOptions {
-        let (steps, speed) = (self.rest.finest_steps, self.rest.speed);
+    fn options(&self) -> NewtonOptions {
+        let (steps, speed) = (self.settings.finest_steps, self.settings.speed);
         NewtonOptions {
             first: FIRST,
             longest: 1.0,
             steps,
             speed,
-            non_static: self.rest.non_static,
+            non_static: self.settings.non_static,
             farthest: FARTHEST,
-            prove: true,
-            rough: false,
-            yields: false,
+            proof: Proof::of(self.settings.long_proof),
+            skip_line_search: false,
+            holds_stopped: false,
             one_by_one: false,
-            long_proof: self.rest.long_proof,
-            asleep: self.rest.asleep,
-            precision: self.rest.precision,
+            asleep: self.settings.asleep,
+            precision: self.settings.precision,
         }
     }
 
     fn step(
         &mut self,
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         stop: &(dyn Fn() -> bool + Sync),
     ) -> Result<Outcome, StaticsError> {
-        self.descent.step(&mut self.system, &mut self.x, pace, stop).map_err(|halt| match halt {
+        self.newton.step(&mut self.system, &mut self.x, options, stop).map_err(|halt| match halt {
             Halt::NotPositive(error) => error.into(),
             Halt::Stopped => StaticsError::Stopped,
         })
     }
 
-    /// Goes on until the garment is at rest; `progress` hears of every step.
+    /// Makes steps until the garment is at rest; `progress` is called after every step.
     ///
     /// # Errors
-    /// Every [`StaticsError`]; the steps allowed are those of the finest level of
-    /// [`StaticEquilibrium`].
+    /// Every [`StaticsError`]; the greatest number of steps is
+    /// [`StaticEquilibrium::finest_steps`].
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<Equilibrium, StaticsError> {
-        let (clock, budget, pace) = (Instant::now(), self.rest.budget, self.pace());
-        let first = self.descent.outcome().steps;
-        let mut outcome = self.descent.outcome();
-        while !outcome.at_rest && outcome.steps < first + pace.steps {
-            outcome = self.step(&pace, &|| clock.elapsed() > budget)?;
+        let (clock, budget, options) = (Instant::now(), self.settings.budget, self.options());
+        let first = self.newton.outcome().steps;
+        let mut outcome = self.newton.outcome();
+        while !outcome.at_rest && outcome.steps < first + options.steps {
+            outcome = self.step(&options, &|| clock.elapsed() > budget)?;
             if progress(&self.report(clock, first)).is_break() {
                 return Err(StaticsError::Stopped);
             }
         }
-        self.system.touch(&self.x);
+        self.system.update_contacts(&self.x);
         let unbalanced = unbalanced(&self.system, &self.system.gradient(&self.x), &self.pieces);
         let state = Equilibrium {
             positions: self.positions(),
             outcome,
             residual: unbalanced.force,
             unbalanced,
-            slides: self.pieces.spread(&self.system.held_back(&self.x)),
+            slides: self.pieces.spread(&self.system.displacements(&self.x)),
             folds: self.system.elastic.held().to_vec(),
             friction_contacts: self
                 .system
-                .layers
+                .self_contact
                 .as_ref()
-                .map_or_else(Vec::new, |l| l.friction_contacts.clone()),
+                .map_or_else(Vec::new, |c| c.friction_contacts.clone()),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),
-            dip: self.wearer.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),
+            dip: self.collider.map_or(0.0, |c| clearance(&self.sheet, c.surface, &self.x).depth),
             joined_at: None,
             levels: vec![self.report(clock, first)],
             restarts: 0,
         };
-        let pairs = self.descent.crossings(&self.x);
+        let pairs = self.newton.crossings(&self.x);
         if pairs > 0 {
             return Err(StaticsError::Crossing { pairs, state: Box::new(state) });
         }
-        self.rest.judge(&self.scene, state)
+        self.settings.judge(&self.scene, state)
     }
 
     fn report(&self, clock: Instant, first: usize) -> LevelReport {
-        let outcome = self.descent.outcome();
+        let outcome = self.newton.outcome();
         let outcome = Outcome { steps: outcome.steps - first, ..outcome };
         LevelReport {
             nodes: self.x.len(),

@@ -1,18 +1,20 @@
-//! What a way to rest is laid out on, before anything moves: the levels, from the cut pieces to the
-//! coarsest mesh.
+//! The plan of one try: the mesh levels of a scene, from the cut pieces to the coarsest mesh.
+//!
+//! Method: each level is coarsened from the finer one (see `levels/coarsen`) until it has few
+//! enough points; levels whose cloth intersects itself at the start are dropped. Cost: O(n log n).
 
+use crate::contact::collision_surface::CollisionSurface;
 use crate::contact::past::BodyBox;
-use crate::contact::skin::CollisionSurface;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
-use crate::statics::levels::assemble::{Collider, assemble, cloths, gravity, kept_threads};
-use crate::statics::levels::bending_continuation::{EDGES, EDGES_THROUGH, Grade};
+use crate::statics::levels::assemble::{Collider, assemble, cloths, gravity, kept_seam_forces};
+use crate::statics::levels::bending_continuation::{BendingContinuation, EDGES, EDGES_THROUGH};
 use crate::statics::levels::coarsen::{Coarser, coarsen};
 use crate::statics::levels::mesh_level::Level;
 use crate::statics::levels::pieces::Pieces;
+use crate::statics::newton::sequential_start::stack_size;
 use crate::statics::newton::settings::StaticEquilibrium;
-use crate::statics::newton::stack::pile_of;
 use crate::statics::report::error::StaticsError;
 use crate::statics::report::start::{crossing, crossings_at_start};
 use crate::stopper::Stopper;
@@ -21,35 +23,34 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// The levels of a scene. Nothing of it changes on the way, so a finer level can be made ready
-/// while a coarser one moves.
+/// The levels of a scene. A plan does not change, so that a finer level can be prepared while a
+/// coarser one is solved.
 pub(crate) struct Plan<'a> {
-    pub(crate) rest: &'a StaticEquilibrium,
+    pub(crate) settings: &'a StaticEquilibrium,
     pub(crate) scene: &'a Scene,
     pub(crate) body: Option<Collider<'a>>,
-    /// What keeps cloth out while it is sewn, one after the other; the body where there is nothing
-    /// else.
+    /// The solids on which the cloth is sewn, one after the other; empty for the body alone.
     pub(crate) around: &'a [&'a dyn CollisionSurface],
-    /// Says whether the caller wants to stop.
+    /// Tells whether the caller wants to stop.
     pub(crate) stopper: &'a Stopper,
-    /// The box around the body, where there is one and the cloth has weight.
+    /// The bounding box of the body, if there is one and the cloth has weight.
     pub(crate) body_box: Option<BodyBox>,
-    /// What no panel and what each panel is made of.
+    /// The fabric of vertices without a panel, then that of each panel.
     pub(crate) cloths: Vec<&'a Fabric>,
     /// Whether many cloths lie on each other.
-    pub(crate) is_pile: bool,
-    /// Fine to coarse.
+    pub(crate) is_stack: bool,
+    /// The pieces of each level, from fine to coarse.
     pub(crate) pieces: Vec<Pieces>,
-    /// How each level but the finest was made from the finer one.
+    /// How each level but the finest was coarsened from the finer one.
     pub(crate) coarser: Vec<Coarser>,
-    /// Where the vertices of each level start.
+    /// The initial positions of the vertices of each level, m.
     pub(crate) starts: Vec<Vec<Vec3>>,
 }
 
 impl<'a> Plan<'a> {
     /// Levels down to one of about `coarsest` nodes, of a scene whose vertices begin at `start`.
     pub(crate) fn new(
-        rest: &'a StaticEquilibrium,
+        settings: &'a StaticEquilibrium,
         coarsest: usize,
         scene: &'a Scene,
         body: Option<Collider<'a>>,
@@ -57,16 +58,16 @@ impl<'a> Plan<'a> {
         stopper: &'a Stopper,
         start: &[Vec3],
     ) -> Result<Self, StaticsError> {
-        let body_box = body.and_then(|w| BodyBox::of(w.skin, &gravity(scene)));
+        let body_box = body.and_then(|c| BodyBox::of(c.surface, &gravity(scene)));
         let (mut pieces, mut coarser) = levels(scene, coarsest);
         let mut starts = vec![start.to_vec()];
         for level in &coarser {
             let finer = &starts[starts.len() - 1];
             starts.push(level.kept.iter().map(|&v| finer[v as usize]).collect());
         }
-        // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
+        // A coarse mesh cannot follow a pleat: the coarsest level must start without crossings.
         while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
-            if rest.sew_through {
+            if settings.sew_through {
                 break;
             }
             let crossings = crossings_at_start(scene, coarse, start)?;
@@ -77,17 +78,34 @@ impl<'a> Plan<'a> {
             pieces.pop();
             starts.pop();
         }
-        // A collider may stand for no body.
+        // A collider may have no surface.
         if scene.pinned.is_empty() && body_box.is_none() && gravity(scene).norm() > 0.0 {
             return Err(StaticsError::Falls);
         }
-        let (cloths, is_pile) = (cloths(scene), pile_of(scene).is_some());
-        Ok(Self { rest, scene, body, around, stopper, body_box, cloths, is_pile, pieces, coarser, starts })
+        let (cloths, is_stack) = (cloths(scene), stack_size(scene).is_some());
+        Ok(Self {
+            settings,
+            scene,
+            body,
+            around,
+            stopper,
+            body_box,
+            cloths,
+            is_stack,
+            pieces,
+            coarser,
+            starts,
+        })
     }
 
-    /// What keeps cloth out while its seams close.
+    /// The level index of the coarsest level.
+    pub(crate) fn coarsest_level(&self) -> usize {
+        self.pieces.len() - 1
+    }
+
+    /// The collider while the seams close.
     pub(crate) fn sewn_on(&self) -> Option<Collider<'a>> {
-        self.body.map(|w| Collider { skin: self.around.first().copied().unwrap_or(w.skin), ..w })
+        self.body.map(|c| Collider { surface: self.around.first().copied().unwrap_or(c.surface), ..c })
     }
 
     /// Mean length of the edges of the coarsest level, m.
@@ -99,48 +117,53 @@ impl<'a> Plan<'a> {
         sides.sum::<f64>() / (3 * coarsest.triangles.len()).max(1) as f64
     }
 
-    /// The vertex of the finest level that vertex `v` of level `k` is.
+    /// The vertex of the finest level that is vertex `v` of level `k`.
     pub(crate) fn finest_of(&self, k: usize, v: u32) -> u32 {
         self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize])
     }
 
-    /// Points of the level that is finer than the coarsest, if there is one.
+    /// Points of the level next to the coarsest, if there is one.
     pub(crate) fn second(&self) -> Option<usize> {
         self.pieces.len().checked_sub(2).map(|k| self.pieces[k].points)
     }
 
-    /// How bending is let go in a garment of that size, if it is.
-    pub(crate) fn grade(&self, size: f64) -> Option<Grade> {
+    /// The bending continuation of a garment of that size, if it is enabled.
+    pub(crate) fn continuation(&self, size: f64) -> Option<BendingContinuation> {
         let gravity = gravity(self.scene).norm();
-        let edges = if self.rest.sew_through { EDGES_THROUGH } else { EDGES };
-        self.rest.bending_continuation.then(|| Grade::of(&self.cloths, gravity, size, edges)).flatten()
+        let edges = if self.settings.sew_through { EDGES_THROUGH } else { EDGES };
+        self.settings
+            .bending_continuation
+            .then(|| BendingContinuation::of(&self.cloths, gravity, size, edges))
+            .flatten()
     }
 
-    /// Level `k`, sewn, with its nodes nowhere yet.
+    /// Level `k`, sewn, without positions of its nodes.
     pub(crate) fn level(&self, k: usize) -> Result<Level<'a>, StaticsError> {
         let pieces = &self.pieces[k];
         let sheet = pieces.sewn_sheet(&self.cloths)?;
         let layout = pieces.sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-        let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.rest.models)?;
-        system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
-        system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
-        if let (true, true, Some(s)) = (self.rest.bending_continuation, k > 0, &mut system.support) {
-            // Offsets that grow with the edges of a passing state would shake the cloth, and with
-            // it the choice of folds.
-            s.edges.clear();
+        let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.settings.models)?;
+        system.seam_forces = kept_seam_forces(self.scene, pieces, self.settings.join_gap);
+        system.self_contact.iter_mut().for_each(|c| c.stacked = self.is_stack);
+        if let (true, true, Some(contact)) =
+            (self.settings.bending_continuation, k > 0, &mut system.body_contact)
+        {
+            // Offsets that grow in an intermediate state would move the cloth, and so change which
+            // folds form.
+            contact.edges.clear();
         }
-        system.support.iter_mut().for_each(|s| s.hard = self.rest.sew_through);
+        system.body_contact.iter_mut().for_each(|c| c.stiffens_inside = self.settings.sew_through);
         Ok(Level { system, sheet, layout, x: Vec::new(), friction: None })
     }
 
-    /// The tree of a level; what thread holds together is no obstacle to itself.
-    pub(crate) fn tree(&self, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
+    /// The tree of level `k`, while it is sewn or after. The two sides of a seam are no obstacle to
+    /// each other.
+    pub(crate) fn tree(&self, k: usize, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
         let tree = ClothTree::new(sheet.triangles(), layout);
         let kept = || self.scene.seams.iter().any(|s| !s.joined);
-        let nodes = |p: &Pieces| if sewing { p.rest.len() } else { p.nodes };
-        match self.pieces.iter().rev().find(|p| nodes(p) == layout.len()) {
-            Some(p) if sewing => tree.sewing(p.point.clone()),
-            Some(p) if kept() => tree.sewing(p.node_points()),
+        match &self.pieces[k] {
+            p if sewing => tree.sewing(p.point.clone()),
+            p if kept() => tree.sewing(p.node_points()),
             _ => tree,
         }
     }

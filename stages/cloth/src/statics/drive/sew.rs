@@ -1,9 +1,15 @@
-//! Panels are sewn, on the coarsest level.
+//! Sewing: the seams are closed on the coarsest level.
+//!
+//! Method: closing forces that hardly depend on the gap pull the two sides of each seam together,
+//! without weight and friction, and grow by rounds until the seams are closed (see [`SeamForce`]).
+//! Then each pair becomes one node. Where the scene is sewn on other solids first, each of them
+//! pushes the sewn cloth out. Cloth without seams is only flattened. Cost: some 40 Newton steps a
+//! round. Limits: where the body keeps seams open, they are reported as open.
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use crate::scene::Seam;
-use crate::statics::drive::coarse_to_fine::Solve;
+use crate::statics::drive::coarse_to_fine::{LevelMesh, Solve};
 use crate::statics::drive::contour::uncross;
 use crate::statics::forces::height_springs::HeightSprings;
 use crate::statics::forces::seam_force::{SeamForce, widest};
@@ -11,7 +17,7 @@ use crate::statics::forces::system::System;
 use crate::statics::levels::assemble::{Collider, assemble, gravity, spacing, strongest};
 use crate::statics::levels::bending_continuation::stages;
 use crate::statics::levels::buckle::out_of_plane;
-use crate::statics::newton::patience::Patience;
+use crate::statics::newton::patience::{Patience, Shrinking};
 use crate::statics::newton::to_rest::NewtonOptions;
 use crate::statics::report::equilibrium::Progress;
 use crate::statics::report::error::MOST_EDGES;
@@ -21,77 +27,88 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
+/// Closing force per metre of seam in the first round, as a share of stretch stiffness: the strain
+/// that it causes.
 const SEAM_PULL: f64 = 0.01;
 
-/// Factor by which a seam that stays open pulls harder, and how often.
-const HARDER: (f64, usize) = (3.0, 4);
+/// Rounds of closing, in each of which the closing force is constant.
+const ROUNDS: usize = 4;
 
-/// Steps of sewing, its first step of pseudo-time, s, and the least way that is the farthest of a
-/// step, m.
-const SEWING: (usize, f64, f64) = (40, 0.02, 0.05);
+/// Factor between the closing force of a round and that of the round before.
+const GROWTH: f64 = 3.0;
 
-/// Steps in which a wide gap must shrink, and by what share of itself; else it is pulled harder, or
-/// given up.
-const SHRINKING: (usize, f64) = (12, 0.01);
+/// Newton steps of a round.
+const STEPS: usize = 40;
 
-/// How many times more a gap may shrink under a harder pull than in proportion to it.
+/// First step of pseudo-time, s.
+const FIRST: f64 = 0.02;
+
+/// Farthest that a node may move in a step, m; more where the gap is wide.
+const FARTHEST: f64 = 0.05;
+
+/// How fast a wide gap must shrink; otherwise the round ends.
+const SHRINKS: Patience = Patience { steps: 12, share: 0.01 };
+
+/// Factor by which a gap may shrink more under a stronger force than in proportion to it.
 const MORE_THAN_LINEAR: f64 = 3.0;
 
-/// The share of an edge that a gap may be wide where cloth is taken out of itself after sewing.
-const SNAPPED: f64 = 0.3;
+/// Widest gap at which seams are joined where crossings are resolved after sewing, as a share of an
+/// edge.
+const JOINED_GAP: f64 = 0.3;
 
-/// Cloth that is less deep in the body than this comes out while it drapes, and the farthest that
-/// is looked for it, m.
+/// Depth in the body up to which cloth comes out while it drapes, m.
 const SHALLOW: f64 = 5e-3;
+
+/// Greatest depth at which cloth in the body is found, m.
 const DEEPEST: f64 = 0.3;
 
-/// Steps in which sewn cloth slides to where it fits, and the longest step of pseudo-time, s.
-const SETTLING: usize = 60;
-const LONGEST: f64 = 0.5;
+/// Newton steps in which sewn cloth slides to where it fits.
+const SLIDING_STEPS: usize = 60;
 
-/// How stiff a panel is held at its mean height while it is sewn, a square metre of it, as a share
-/// of the pull of a metre of seam in the first round, 1/m^2. Found by trial: stiffer in the harder
-/// rounds, waist seams of panels placed apart stay open.
-const HELD: f64 = 40.0;
+/// Longest step of pseudo-time while it slides, s.
+const LONGEST_SLIDE: f64 = 0.5;
 
-/// The share of that with which sewn cloth is held that a body pushes out of itself: it goes up
-/// with the shoulders.
-const LOOSE: f64 = 0.05;
+/// Stiffness of the height springs of a square metre of panel, as a share of the closing force of a
+/// metre of seam in the first round, 1/m^2. Found by trial: if it grew with the closing force,
+/// waist seams of panels placed apart would stay open.
+const HEIGHT_STIFFNESS: f64 = 40.0;
 
-/// Steps in which cloth without seams is pressed flat.
-const PRESSING: usize = 10;
+/// Share of that stiffness while a solid pushes sewn cloth out of itself: the cloth must rise with
+/// the shoulders.
+const PUSHED_STIFFNESS: f64 = 0.05;
+
+/// Newton steps in which cloth without seams is flattened.
+const FLATTENING_STEPS: usize = 10;
 
 impl Solve<'_> {
     /// Closes the seams on the coarsest level and joins them.
     pub(crate) fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), StaticsError> {
-        let coarsest = self.plan.pieces.len() - 1;
+        let coarsest = self.plan.coarsest_level();
         let sheet = self.plan.pieces[coarsest].open_sheet(&self.plan.cloths)?;
         let mut x = self.plan.starts[coarsest].clone();
         let pairs = self.plan.pieces[coarsest].seam_pairs();
-        let here = self.plan.rest.from_here;
-        if here && widest(&x, &pairs) <= self.plan.rest.join_gap {
+        if self.plan.settings.from_here && widest(&x, &pairs) <= self.plan.settings.join_gap {
             self.joined_at = (!pairs.is_empty()).then(|| widest(&x, &pairs));
         } else if pairs.is_empty() {
-            self.press(&sheet, &mut x, progress)?;
+            self.flatten(&sheet, &mut x, progress)?;
         } else {
             self.close(&sheet, &pairs, &mut x, progress)?;
         }
         self.x = self.plan.pieces[coarsest].sew(&x, sheet.masses());
-        self.crossed = if self.through { self.uncross()? } else { 0 };
+        self.crossings = if self.sews_through { self.uncross()? } else { 0 };
         if let (Some(body), [first, next @ ..]) = (self.plan.body, self.plan.around) {
-            // Friction would hold the cloth where its seams happened to close.
-            let solid = |skin| Collider { skin, friction: 0.0 };
+            // Without friction, which would hold the cloth where its seams happened to close.
+            let solid = |surface| Collider { surface, friction: 0.0 };
             self.settle_on(solid(*first), progress)?;
-            for skin in next.iter().copied().chain([body.skin]) {
-                self.push_out(solid(skin), progress)?;
+            for surface in next.iter().copied().chain([body.surface]) {
+                self.push_out(solid(surface), progress)?;
             }
-            self.settle_on(solid(body.skin), progress)?;
+            self.settle_on(solid(body.surface), progress)?;
         }
         Ok(())
     }
 
-    /// Closes the seams.
+    /// Closes the seams, of flat cloth a second time from a start out of its plane (see `buckle`).
     fn close(
         &mut self,
         sheet: &Sheet,
@@ -99,62 +116,62 @@ impl Solve<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        self.through = self.plan.rest.sew_through;
+        self.sews_through = self.plan.settings.sew_through;
         let start = x.to_vec();
-        let mut force = self.draw(sheet, pairs, x, progress)?;
+        let mut force = self.close_with_continuation(sheet, pairs, x, progress)?;
         if widest(x, pairs) > self.most_gap() {
-            let pieces = &self.plan.pieces[self.plan.pieces.len() - 1];
+            let pieces = &self.plan.pieces[self.plan.coarsest_level()];
             if let Some(bent) = out_of_plane(pieces, &start, x, self.plan.edge()) {
                 x.copy_from_slice(&bent);
-                force = self.draw(sheet, pairs, x, progress)?;
+                force = self.close_with_continuation(sheet, pairs, x, progress)?;
             }
         }
         let gap = widest(x, pairs);
         self.joined_at = Some(gap);
         if gap > self.most_gap() {
-            let seam = self.widest_seam(self.plan.pieces.len() - 1, x);
+            let seam = self.widest_seam(self.plan.coarsest_level(), x);
             let reversed = probably_reversed(self.plan.scene, &self.plan.starts[0]);
-            let positions = self.carried(x);
+            let positions = self.prolonged(self.plan.coarsest_level(), x);
             return Err(StaticsError::SeamNotClosed { seam, gap, force, reversed, positions });
         }
         Ok(())
     }
 
-    /// Takes the cloth, just sewn, out of itself; how often it still crosses itself.
+    /// Resolves the crossings of the sewn cloth with itself; returns how many are left.
     fn uncross(&mut self) -> Result<usize, StaticsError> {
         if !self.plan.scene.self_collision {
             return Ok(0);
         }
-        let pieces = &self.plan.pieces[self.plan.pieces.len() - 1];
+        let pieces = &self.plan.pieces[self.plan.coarsest_level()];
         let sheet = pieces.sewn_sheet(&self.plan.cloths)?;
-        let tree = self.plan.tree(&sheet, &self.x, false);
+        let tree = self.plan.tree(self.plan.coarsest_level(), &sheet, &self.x, false);
         let mut pinned = vec![false; pieces.nodes];
         pieces.node.iter().zip(&pieces.pinned).for_each(|(n, p)| pinned[*n as usize] |= p);
         Ok(uncross(&sheet, &tree, &pinned, &mut self.x))
     }
 
-    /// Draws the seams of cloth together that is as stiff as its first state is to be, or else,
-    /// each time from the start, as stiff as they close; the force a metre that it took.
-    fn draw(
+    /// Closes the seams of cloth as stiff as in the first equilibrium. Where they stay open, tries
+    /// again from the start with softer cloth. Returns the closing force per metre that it took.
+    fn close_with_continuation(
         &mut self,
         sheet: &Sheet,
         pairs: &[[u32; 2]],
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<f64, StaticsError> {
-        let grade = self.plan.grade(sheet.size()).filter(|_| self.plan.around.is_empty());
-        let first = grade.map_or(1.0, |g| g.first());
+        let continuation = self.plan.continuation(sheet.size()).filter(|_| self.plan.around.is_empty());
+        let first = continuation.map_or(1.0, |g| g.first());
         let mut force = 0.0;
         let start = x.to_vec();
         let softer = stages(first, 1.0);
-        // What stays wide open as limp as it is would stay so while it is stiffer, too: that is
-        // looked at before the stages between.
+        // Seams that stay wide open without added stiffness stay open with it, too. So the softest
+        // stage is tried before the stages between.
         let probe = softer.last().copied().filter(|_| softer.len() > 1);
         for (k, stiff) in std::iter::once(first).chain(probe).chain(softer).enumerate() {
-            // Cloth too stiff to go round the body has been squeezed out of its place: above the
-            // arms, off the shoulders.
+            // Cloth too stiff to go around the body may have moved away: above the arms, or off the
+            // shoulders.
             x.copy_from_slice(&start);
-            force = self.pull(sheet, pairs, x, stiff, progress)?;
+            force = self.close_in_rounds(sheet, pairs, x, stiff, progress)?;
             let gap = widest(x, pairs);
             let is_probe = k == 1 && probe.is_some();
             if if is_probe { self.is_wide(gap) } else { gap <= self.most_gap() } {
@@ -164,13 +181,15 @@ impl Solve<'_> {
         Ok(force)
     }
 
-    fn threads(&self, pairs: &[[u32; 2]], force: f64) -> Vec<SeamForce> {
-        let soft = 2.0 * self.plan.rest.join_gap;
-        pairs.iter().map(|nodes| SeamForce { nodes: *nodes, force, soft }).collect()
+    /// The closing forces of pairs of vertices, N each.
+    fn seam_forces(&self, pairs: &[[u32; 2]], force: f64) -> Vec<SeamForce> {
+        let softening = 2.0 * self.plan.settings.join_gap;
+        pairs.iter().map(|nodes| SeamForce { nodes: *nodes, force, softening }).collect()
     }
 
-    /// Pulls harder and harder until the seams are closed; the force a metre that it took.
-    fn pull(
+    /// Increases the closing force by rounds until the seams are closed; returns the force per
+    /// metre that it took.
+    fn close_in_rounds(
         &mut self,
         sheet: &Sheet,
         pairs: &[[u32; 2]],
@@ -178,18 +197,18 @@ impl Solve<'_> {
         stiff: f64,
         progress: &mut Progress<'_>,
     ) -> Result<f64, StaticsError> {
-        let coarsest = self.plan.pieces.len() - 1;
+        let coarsest = self.plan.coarsest_level();
         let spacing = spacing(&self.plan.pieces[coarsest], pairs);
         let mut pull = SEAM_PULL * strongest(&self.plan.cloths);
         let mut before = f64::INFINITY;
-        for round in 0..HARDER.1 {
+        for round in 0..ROUNDS {
             let gap = widest(x, pairs);
-            if gap < self.plan.rest.join_gap || self.is_wide(gap) && is_hopeless(before, gap, round) {
+            if gap < self.plan.settings.join_gap || self.is_wide(gap) && is_hopeless(before, gap, round) {
                 break;
             }
             before = gap;
             let mut system = self.open(sheet, stiff)?;
-            system.threads = self.threads(pairs, pull * spacing);
+            system.seam_forces = self.seam_forces(pairs, pull * spacing);
             if !self.plan.around.is_empty() {
                 system.height_springs = self.height_springs(
                     sheet,
@@ -198,51 +217,50 @@ impl Solve<'_> {
                     self.plan.pieces[coarsest].panel.clone(),
                 );
             }
-            let (steps, first, least) = SEWING;
-            let farthest = (0.2 * gap).max(least);
-            let pace = NewtonOptions {
-                first,
+            let farthest = (0.2 * gap).max(FARTHEST);
+            let options = NewtonOptions {
+                first: FIRST,
                 longest: 1.0,
-                steps,
-                speed: self.plan.rest.speed,
+                steps: STEPS,
+                speed: self.plan.settings.speed,
                 farthest,
-                asleep: self.plan.rest.asleep && self.plan.around.is_empty(),
-                ..self.pace()
+                asleep: self.plan.settings.asleep && self.plan.around.is_empty(),
+                ..self.options()
             };
-            let shrinking = Patience::new(SHRINKING);
+            let shrinking = Shrinking::new(SHRINKS);
             let closed = |_: &System<'_>, x: &[Vec3]| {
                 let gap = widest(x, pairs);
-                gap < self.plan.rest.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
+                gap < self.plan.settings.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
             };
-            let report =
-                self.run(&mut system, sheet, &self.plan.starts[coarsest], x, &pace, &closed, progress)?;
+            let mesh = LevelMesh { k: coarsest, sheet, layout: &self.plan.starts[coarsest] };
+            let report = self.relax(mesh, &mut system, x, &options, &closed, progress)?;
             self.reports.push(report);
-            pull *= HARDER.0;
+            pull *= GROWTH;
         }
-        Ok(pull / HARDER.0)
+        Ok(pull / GROWTH)
     }
 
     /// Lets a solid push the sewn cloth out of itself.
     fn push_out(&mut self, solid: Collider<'_>, progress: &mut Progress<'_>) -> Result<(), StaticsError> {
-        self.slide(solid, LOOSE, SEWING.0, &|x| depth(solid.skin, x) <= SHALLOW, progress)
+        self.slide(solid, PUSHED_STIFFNESS, STEPS, &|x| depth(solid.surface, x) <= SHALLOW, progress)
     }
 
     /// Lets the sewn cloth slide on a solid to where it fits.
     fn settle_on(&mut self, solid: Collider<'_>, progress: &mut Progress<'_>) -> Result<(), StaticsError> {
-        self.slide(solid, 0.0, SETTLING, &|_| false, progress)
+        self.slide(solid, 0.0, SLIDING_STEPS, &|_| false, progress)
     }
 
-    /// Lets the sewn cloth move on a solid, without weight, held at its height so hard, in so many
-    /// steps or until it is done.
+    /// Lets the sewn cloth move on a solid, without weight, in so many steps or until it is `done`.
+    /// `stiffness` is that of the height springs, as a share of their stiffness while seams close.
     fn slide(
         &mut self,
         solid: Collider<'_>,
-        held: f64,
+        stiffness: f64,
         steps: usize,
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        let coarsest = self.plan.pieces.len() - 1;
+        let coarsest = self.plan.coarsest_level();
         let pieces = &self.plan.pieces[coarsest];
         let sheet = pieces.sewn_sheet(&self.plan.cloths)?;
         let start = pieces.sew(&self.plan.starts[coarsest], &vec![1.0; pieces.rest.len()]);
@@ -250,30 +268,29 @@ impl Solve<'_> {
         pieces.node.iter().zip(&pieces.panel).for_each(|(n, p)| panel[*n as usize] = *p);
         let mut x = std::mem::take(&mut self.x);
         let mut system =
-            assemble(self.plan.scene, Some(solid), pieces, &sheet, false, self.plan.rest.models)?;
+            assemble(self.plan.scene, Some(solid), pieces, &sheet, false, self.plan.settings.models)?;
         system.gravity = Vec3::zeros();
         system.ridges = None;
-        system.support.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
-        system.height_springs = self.height_springs(&sheet, &start, held, panel);
-        let (_, first, farthest) = SEWING;
-        let speed = self.plan.rest.speed;
-        let pace = NewtonOptions {
-            first,
-            longest: LONGEST,
+        system.body_contact.iter_mut().for_each(|s| (s.lets_through, s.depth) = (true, DEEPEST));
+        system.height_springs = self.height_springs(&sheet, &start, stiffness, panel);
+        let options = NewtonOptions {
+            first: FIRST,
+            longest: LONGEST_SLIDE,
             steps,
-            speed,
-            farthest,
-            rough: true,
+            speed: self.plan.settings.speed,
+            farthest: FARTHEST,
+            skip_line_search: true,
             asleep: false,
-            ..self.pace()
+            ..self.options()
         };
-        let report = self.run(&mut system, &sheet, &start, &mut x, &pace, &|_, x| done(x), progress)?;
+        let mesh = LevelMesh { k: coarsest, sheet: &sheet, layout: &start };
+        let report = self.relax(mesh, &mut system, &mut x, &options, &|_, x| done(x), progress)?;
         self.reports.push(report);
         self.x = x;
         Ok(())
     }
 
-    /// What holds each panel at its height under seams: a share of the pull of the first round.
+    /// Springs that hold each panel at its height while seams close.
     fn height_springs(
         &self,
         sheet: &Sheet,
@@ -286,58 +303,57 @@ impl Solve<'_> {
         let mass: f64 = sheet.masses().iter().sum();
         let heights = start.iter().map(|p| up.dot(p)).collect();
         let pull = share * SEAM_PULL * strongest(&self.plan.cloths);
-        Some(HeightSprings { up, heights, groups, stiffness: HELD * pull * area / mass })
+        Some(HeightSprings { up, heights, groups, stiffness: HEIGHT_STIFFNESS * pull * area / mass })
     }
 
-    /// The widest gap at which seams are joined all the same, m.
+    /// The widest gap at which seams are joined, m.
     fn most_gap(&self) -> f64 {
-        let joined = self.plan.rest.join_gap;
-        if self.plan.rest.sew_through { joined.max(SNAPPED * self.plan.edge()) } else { joined }
+        let joined = self.plan.settings.join_gap;
+        if self.plan.settings.sew_through { joined.max(JOINED_GAP * self.plan.edge()) } else { joined }
     }
 
-    /// Whether a gap is wider than a mesh that is too coarse leaves it.
+    /// Whether a gap is too wide to be left by a coarse mesh alone.
     fn is_wide(&self, gap: f64) -> bool {
         gap > MOST_EDGES * self.plan.edge()
     }
 
-    /// Lets stiff cloth without seams forget its unevenness before it has weight.
-    fn press(
+    /// Flattens stiff cloth without seams before it has weight.
+    fn flatten(
         &mut self,
         sheet: &Sheet,
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        let Some(grade) = self.plan.grade(sheet.size()) else { return Ok(()) };
-        let (_, first, farthest) = SEWING;
-        let pace =
-            NewtonOptions { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
+        let Some(continuation) = self.plan.continuation(sheet.size()) else { return Ok(()) };
+        let options = NewtonOptions {
+            first: FIRST,
+            longest: 1.0,
+            steps: FLATTENING_STEPS,
+            speed: 0.0,
+            farthest: FARTHEST,
+            ..self.options()
+        };
         let layout = x.to_vec();
-        let report = self.run(
-            &mut self.open(sheet, grade.first())?,
-            sheet,
-            &layout,
-            x,
-            &pace,
-            &|_, _| false,
-            progress,
-        )?;
+        let mesh = LevelMesh { k: self.plan.coarsest_level(), sheet, layout: &layout };
+        let system = &mut self.open(sheet, continuation.first())?;
+        let report = self.relax(mesh, system, x, &options, &|_, _| false, progress)?;
         self.reports.push(report);
         Ok(())
     }
 
-    /// Weightless cloth before it is sewn, so many times stiffer.
+    /// The system of the open panels without weight, with bending `stiff` times stiffer.
     fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, StaticsError> {
-        let coarsest = &self.plan.pieces[self.plan.pieces.len() - 1];
+        let coarsest = &self.plan.pieces[self.plan.coarsest_level()];
         let mut system =
-            assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.rest.models)?;
-        if self.plan.rest.bending_continuation {
+            assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.settings.models)?;
+        if self.plan.settings.bending_continuation {
             system.elastic.scale_bending(stiff);
-            system.support.iter_mut().for_each(|s| s.grows = true);
+            system.body_contact.iter_mut().for_each(|s| s.grows_offsets = true);
         }
         Ok(system)
     }
 
-    /// The name of the seam that is open widest, with the vertices of level `k` at `x`.
+    /// The name of the seam with the widest gap, with the vertices of level `k` at `x`.
     pub(crate) fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
         let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
         let worst = self.plan.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
@@ -348,19 +364,18 @@ impl Solve<'_> {
     }
 }
 
-/// Whether a gap, `before` one pull and `after` a harder one, stays open under the hardest, when so
-/// many rounds of pulling are over.
+/// Whether a gap that a round has changed from `before` to `after` will stay open in the last
+/// round, after so many rounds.
 fn is_hopeless(before: f64, after: f64, rounds: usize) -> bool {
-    let (factor, most) = HARDER;
-    // Of a sheet that stretches, the gap shrinks in proportion to the pull.
-    let last = factor.powi(most.saturating_sub(rounds) as i32);
-    let more = (before - after) * (last - 1.0) / (1.0 - 1.0 / factor);
+    // The gap of a sheet that stretches shrinks in proportion to the force.
+    let last = GROWTH.powi(ROUNDS.saturating_sub(rounds) as i32);
+    let more = (before - after) * (last - 1.0) / (1.0 - 1.0 / GROWTH);
     rounds > 1 && MORE_THAN_LINEAR * more < after
 }
 
-/// How deep a vertex lies in a solid at most, m.
-fn depth(skin: &dyn CollisionSurface, x: &[Vec3]) -> f64 {
-    let near = skin.nearest(x, &vec![DEEPEST; x.len()]);
+/// Greatest depth of a vertex in a solid, m.
+fn depth(surface: &dyn CollisionSurface, x: &[Vec3]) -> f64 {
+    let near = surface.nearest(x, &vec![DEEPEST; x.len()]);
     near.iter().flatten().map(|n| -n.distance).fold(0.0, f64::max)
 }
 

@@ -1,8 +1,8 @@
-//! Dense Cholesky elimination in pieces that several threads may share.
+//! Dense Cholesky factorization in blocks that run in parallel.
 //!
-//! The pieces depend on the sizes alone, so the bits are the same for any number of threads.
-//! Products, triangular solutions and small factors are those of the `faer` library, which picks
-//! its instructions at run time.
+//! The blocks depend on the sizes alone, so the bits are the same for any number of threads.
+//! Products, triangular solves and small factorizations are those of the `faer` library, which
+//! chooses its instructions at run time. Cost: O(n³) for n columns.
 
 use crate::linear::leave_vectors;
 use crate::statics::factor::scalar::Real;
@@ -14,17 +14,17 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
 
-/// Columns factored in one piece.
+/// Columns of a block that is factored at once.
 const PANEL: usize = 128;
 
-/// Columns of a product, and rows of a triangular solution, in one piece.
+/// Columns of a block of a product, and rows of a block of a triangular solve.
 const STRIP: usize = 128;
 
-/// Multiplications above which pieces are worth a task of their own.
+/// Least number of multiplications of a block that is worth a task of its own.
 const TASK: usize = 2_000_000;
 
-/// Factors the lower trapezoid `a`, at least as high as wide: Cholesky's columns of a matrix whose
-/// other columns are elsewhere.
+/// Factors the lower trapezoid `a`, at least as high as wide: the first columns of a Cholesky
+/// factor.
 ///
 /// # Errors
 /// The column whose pivot is not positive.
@@ -55,7 +55,7 @@ fn factor_panel<T: Real>(a: MatMut<'_, T>) -> Result<(), usize> {
     Ok(())
 }
 
-/// Solves for the rows below a factored square.
+/// The triangular solve for the rows below a factored square.
 fn solve_rows<T: Real>(top: MatRef<'_, T>, mut below: MatMut<'_, T>) {
     let rows = below.nrows();
     if rows <= STRIP {
@@ -67,8 +67,8 @@ fn solve_rows<T: Real>(top: MatRef<'_, T>, mut below: MatMut<'_, T>) {
     join_if(work > TASK, || solve_rows(top, upper), || solve_rows(top, lower));
 }
 
-/// Takes `l` times the transpose of its first rows from the lower trapezoid `to`, or writes it
-/// there, negative.
+/// Subtracts `l` times the transpose of its first rows from the lower trapezoid `to`, or writes the
+/// negative product there.
 pub(crate) fn take_product<T: Real>(mut to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     let columns = to.ncols();
     if columns <= STRIP {
@@ -82,7 +82,7 @@ pub(crate) fn take_product<T: Real>(mut to: MatMut<'_, T>, accum: Accum, l: MatR
     join_if(work > TASK, || take_product(left, accum, l), || take_product(right, accum, lower));
 }
 
-/// One strip: a triangle, and what is below it.
+/// One strip: a triangle and the rows below it.
 fn take_strip<T: Real>(to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     let columns = to.ncols();
     let (square, rest) = to.split_at_row_mut(columns);
@@ -96,8 +96,8 @@ fn take_strip<T: Real>(to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
 }
 
 /// The factor of a fixed matrix and what it leaves of the border, to show this machine's
-/// arithmetic; see [`crate::linear::probe`]. The matrix is strictly dominated by its diagonal, so
-/// it has a factor.
+/// arithmetic; see [`crate::statics::factor::probe`]. The matrix is strictly dominated by its
+/// diagonal, so it has a factor.
 pub(crate) fn probe_factor<T: Real>(rows: usize, columns: usize) -> Vec<f64> {
     let value =
         |r: usize, c: usize| if r == c { 2.0 * rows as f64 } else { ((r * c + r + c) % 97) as f64 / 97.0 };
@@ -112,12 +112,12 @@ pub(crate) fn probe_factor<T: Real>(rows: usize, columns: usize) -> Vec<f64> {
     own.into_iter().chain(border).map(Real::wide).collect()
 }
 
-/// Half of `size`, in whole pieces.
+/// Half of `size`, in whole blocks.
 fn whole_pieces(size: usize, piece: usize) -> usize {
     size.div_ceil(2 * piece) * piece
 }
 
-/// Both, side by side where it is worth it.
+/// Runs both functions, in parallel where it is worth it.
 pub(crate) fn join_if<A: Send, B: Send>(
     worth: bool,
     a: impl FnOnce() -> A + Send,

@@ -1,8 +1,8 @@
 //! Dense elimination of one front of a sparse factor.
 //!
-//! A front of `m` unknowns, the first `own` of which are eliminated, is kept in two column-major
-//! parts: its own columns, `m` rows each, which become the factor's, and the border's lower
-//! triangle, which becomes what the parent adds.
+//! A front has `m` unknowns, of which the first `own` are eliminated. It is stored in two
+//! column-major parts: its own columns of `m` rows, which become part of the factor, and the lower
+//! triangle of its border, which the parent adds. Cost: O(m² own).
 
 use crate::statics::factor::dense::{factor_columns, take_product};
 use crate::statics::factor::scalar::Real;
@@ -11,26 +11,26 @@ use faer::{Accum, MatMut};
 use nalgebra::Matrix3;
 use std::ops::Range;
 
-/// Nodes of a child's border that follow one another in the parent, too.
+/// Nodes of the border of a child that are consecutive in the parent, too.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Run {
-    /// The first in the child's border.
+    /// The first node in the border of the child.
     pub(crate) child: u32,
-    /// The first among the parent's rows.
+    /// Its row in the parent.
     pub(crate) parent: u32,
-    /// How many.
+    /// The number of nodes.
     pub(crate) nodes: u32,
 }
 
 impl Run {
-    /// Its unknowns in the child's border, and among the parent's rows.
+    /// Its unknowns in the border of the child, and in the rows of the parent.
     pub(crate) fn rows(&self) -> (Range<usize>, Range<usize>) {
         let rows = |first: u32| 3 * first as usize..3 * (first + self.nodes) as usize;
         (rows(self.child), rows(self.parent))
     }
 }
 
-/// Adds a run of a child's column to the parent's, without its first rows.
+/// Adds a run of a column of a child to one of the parent, without its first rows.
 #[inline]
 fn add<T: Real>(from: &[T], to: &mut [T], first: usize, run: &Run, skip: usize) {
     let (at, here) = (3 * run.child as usize, 3 * run.parent as usize - first);
@@ -39,34 +39,34 @@ fn add<T: Real>(from: &[T], to: &mut [T], first: usize, run: &Run, skip: usize) 
     to.iter_mut().zip(&from[at + skip..at + length]).for_each(|(t, f)| *t += *f);
 }
 
-/// One front at work.
+/// A front during elimination.
 pub(crate) struct Dense<'a, T> {
-    /// Own columns, `m` rows each.
+    /// Its own columns, of `m` rows each.
     pub(crate) columns: &'a mut Vec<T>,
-    /// The border's part, `m - own` rows and columns or more; only its lower triangle is used.
-    /// Elimination writes it first.
+    /// The border, of at least `m - own` rows and columns, of which only the lower triangle is
+    /// used. Elimination writes it first.
     pub(crate) border: Vec<T>,
     m: usize,
     own: usize,
 }
 
 impl<'a, T: Real> Dense<'a, T> {
-    /// A front in the memory of `columns`, which are zeros then, and of `border`, which elimination
-    /// writes over.
+    /// A front in the memory of `columns`, which are set to zero, and of `border`, which
+    /// elimination overwrites.
     pub(crate) fn zeros(columns: &'a mut Vec<T>, mut border: Vec<T>, m: usize, own: usize) -> Self {
         let n = m - own;
         columns.resize(m * own, T::ZERO);
-        // Memory that was longer stays so: to cut it would fill it with zeros again later.
+        // Longer memory keeps its length: to shorten it would fill it with zeros again later.
         border.resize(border.len().max(n * n), T::ZERO);
         (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(T::ZERO));
         if own == 0 {
-            // Nothing is eliminated, so nothing writes it.
+            // Without elimination nothing else writes the border.
             border[..n * n].fill(T::ZERO);
         }
         Self { columns, border, m, own }
     }
 
-    /// Column `c` from its first row that is kept, and the number of that row.
+    /// Column `c` from its first stored row on, and the index of that row.
     fn column(&mut self, c: usize) -> (&mut [T], usize) {
         let (m, own, n) = (self.m, self.own, self.m - self.own);
         if c < own {
@@ -86,14 +86,14 @@ impl<'a, T: Real> Dense<'a, T> {
         }
     }
 
-    /// Adds what a child leaves in the own columns: a lower triangle over its border, whose nodes
-    /// are the rows of these runs.
+    /// Adds the contribution of a child to the own columns: a lower triangle over its border, whose
+    /// nodes are the rows of `runs`.
     pub(crate) fn add_to_own(&mut self, update: &[T], runs: &[Run]) {
         let own = runs.partition_point(|r| 3 * (r.parent as usize) < self.own);
         self.extend_add(update, runs, 0..own);
     }
 
-    /// The same in the border's columns, once the own ones are eliminated.
+    /// The same for the columns of the border, once the own ones are eliminated.
     pub(crate) fn add_to_border(&mut self, update: &[T], runs: &[Run]) {
         let own = runs.partition_point(|r| 3 * (r.parent as usize) < self.own);
         self.extend_add(update, runs, own..runs.len());
@@ -106,15 +106,15 @@ impl<'a, T: Real> Dense<'a, T> {
             for c in 0..3 * own.nodes as usize {
                 let from = &update[(3 * own.child as usize + c) * n..][..n];
                 let (to, first) = self.column(3 * own.parent as usize + c);
-                // Within its own run from the diagonal on, in the later ones all.
+                // From the diagonal on within its own run, and all of the later ones.
                 add(from, to, first, own, c);
                 runs[k + 1..].iter().for_each(|run| add(from, to, first, run, 0));
             }
         }
     }
 
-    /// Eliminates the own columns, which become the factor's, and writes what that leaves of the
-    /// border.
+    /// Eliminates the own columns, which become part of the factor, and writes the contribution to
+    /// the border.
     ///
     /// # Errors
     /// The column whose pivot is not positive.

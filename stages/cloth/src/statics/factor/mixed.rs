@@ -1,10 +1,10 @@
-//! A factor in single precision where that solves well, in double precision where it does not.
+//! Mixed precision: a factor in single precision where it solves well enough, otherwise in double.
 //!
-//! Method: the solution of single precision is held against the matrix in double precision and
-//! refined (see `scalar`). Where it leaves more than [`RIGHT`] of the right side, the matrix is
-//! factored anew in double precision. Cost: half of a factor of double precision, and a product
-//! with the matrix, O(n). What is left of the right side depends on the numbers alone, so the bits
-//! do not depend on threads.
+//! Method: iterative refinement of the solution in single precision (see `scalar`). Where the
+//! residual stays above [`RIGHT`] of the right-hand side, the matrix is factored again in double
+//! precision. Cost: half of a factorization in double precision, and a product with the matrix,
+//! O(n). The choice depends on the numbers alone, so the bits do not depend on the number of
+//! threads.
 
 use crate::linear::Pattern;
 use crate::statics::factor::multifrontal::{Factor, Halt, Stop, Symbolic};
@@ -13,14 +13,14 @@ use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// What a solution in single precision may leave, as a share of the right side: the step is then
-/// right to about a thousandth, which is more than Newton's method makes of it.
+/// Greatest residual of a solution in single precision, as a share of the right-hand side. The step
+/// is then accurate to about a thousandth, which is more than Newton's method needs.
 const RIGHT: f64 = 1e-4;
 
-/// Refinements of a solution before the matrix counts as too ill conditioned for single precision.
+/// Refinements at most before the matrix counts as too ill conditioned for single precision.
 const REFINEMENTS: usize = 2;
 
-/// A matrix that is to be solved with.
+/// The matrix of a linear system.
 #[derive(Clone, Copy)]
 pub(crate) struct Matrix<'m> {
     pub(crate) pattern: &'m Pattern,
@@ -28,7 +28,7 @@ pub(crate) struct Matrix<'m> {
     pub(crate) values: &'m [Matrix3<f64>],
 }
 
-/// The factors, of which the last one made counts.
+/// The factors in both precisions, and which of them is the last one.
 #[derive(Default)]
 pub(crate) struct Mixed {
     single: Factor<f32>,
@@ -38,10 +38,10 @@ pub(crate) struct Mixed {
 
 impl Mixed {
     /// Factors the matrix and solves for `right`. Where the matrix `may_fail` to be positive
-    /// definite, single precision's word is taken for it.
+    /// definite, a failure in single precision counts.
     ///
     /// # Errors
-    /// [`Halt`]: the matrix is not positive definite, or `stop` said so.
+    /// [`Halt`]: the matrix is not positive definite, or `stop` returned true.
     pub(crate) fn solve(
         &mut self,
         matrix: Matrix<'_>,
@@ -74,7 +74,7 @@ impl Mixed {
         }
     }
 
-    /// Refines a solution of single precision until it is right; whether it is.
+    /// Refines a solution in single precision; returns whether it is accurate enough.
     fn refine(&self, matrix: Matrix<'_>, right: &[Vec3], x: &mut [Vec3]) -> bool {
         let most = RIGHT * norm(right);
         for round in 0..=REFINEMENTS {

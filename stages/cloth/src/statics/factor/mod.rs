@@ -1,6 +1,7 @@
-//! Sparse Cholesky factors of a symmetric matrix of 3 x 3 blocks: order, fronts, dense products.
+//! Sparse Cholesky factorization of a symmetric matrix of 3 x 3 blocks: order of elimination,
+//! fronts and dense products.
 //!
-//! Depends on no other room.
+//! Depends on no other folder.
 
 pub(crate) mod dense;
 pub(crate) mod front;

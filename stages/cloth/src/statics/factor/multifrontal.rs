@@ -1,11 +1,11 @@
-//! Sparse Cholesky factors of a block matrix, front by front.
+//! Sparse Cholesky factorization of a block matrix by the multifrontal method.
 //!
 //! Method: the multifrontal method (Duff, Reid 1983) over a nested dissection. Each front is a
-//! small dense matrix: its own nodes, eliminated, and the border, which passes to the parent. All
-//! heavy work is dense products, so it runs near the speed of the machine. Fronts of different
-//! branches run side by side, large ones in strips of fixed size, and are summed in the order of
-//! the children, so the bits do not depend on threads. The first half of the solution
-//! (`substitute`) is made while a front is at hand.
+//! small dense matrix of its own nodes, which are eliminated, and of its border, which passes to
+//! the parent. All heavy work is dense products, which run near the peak speed of the machine.
+//! Fronts of different branches run in parallel, large ones in strips of fixed size, and are summed
+//! in the order of the children, so the bits do not depend on the number of threads. The forward
+//! substitution (`substitute`) is made while a front is in memory.
 //!
 //! Cost for a sheet of n nodes: about 40 n log2 n numbers in the factor, O(n^1.5) multiplications.
 //! Limit: memory of the factor, about 0.5 GB at 50,000 nodes.
@@ -20,7 +20,7 @@ use crate::statics::factor::scalar::Real;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Mutex;
 
-/// Fronts above this many unknowns are worth a task of their own.
+/// Least number of unknowns of a front that is worth a task of its own.
 const TASK_UNKNOWNS: usize = 400;
 
 /// The matrix is not positive definite at this node.
@@ -39,15 +39,15 @@ pub enum Halt {
     /// The matrix is not positive definite.
     #[error(transparent)]
     NotPositive(#[from] NotPositive),
-    /// The caller wanted no more.
+    /// The caller has stopped it.
     #[error("stopped on request")]
     Stopped,
 }
 
-/// Asked now and then whether to stop.
+/// Returns whether to stop; asked before every front.
 pub type Stop<'s> = dyn Fn() -> bool + Sync + 's;
 
-/// What of the factor does not depend on the values.
+/// The symbolic factorization, which does not depend on the values.
 #[derive(Debug, Clone)]
 pub struct Symbolic {
     /// The free nodes in the order of elimination.
@@ -62,7 +62,7 @@ struct Front {
     children: Vec<usize>,
     /// For each child, where its border lies among this front's rows.
     child_runs: Vec<Vec<Run>>,
-    /// Slot, local row and local column of each block that enters here, and whether it enters
+    /// Slot, local row and local column of each block that is assembled here, and whether it is
     /// transposed.
     entries: Vec<(u32, u32, u32, bool)>,
     /// Unknowns of this front and all below it.
@@ -87,14 +87,14 @@ pub struct Factor<T> {
     spare: Spare<T>,
 }
 
-/// Memory of borders, kept from front to front and from one factorization to the next: fresh pages
-/// cost more than sums.
+/// Memory of borders, reused by later fronts and factorizations: new pages would cost more than the
+/// sums.
 #[derive(Debug, Default)]
 struct Spare<T>(Mutex<Vec<Vec<T>>>);
 
 impl<T> Spare<T> {
-    /// The smallest that holds `size` numbers, or a new one: were a leaf's to grow for the root,
-    /// all would in the end.
+    /// The smallest buffer of at least `size` numbers, or a new one. Small buffers must not grow,
+    /// for in the end all would be large.
     fn take(&self, size: usize) -> Vec<T> {
         let Ok(mut spare) = self.0.lock() else { return Vec::new() };
         let fits = (0..spare.len()).filter(|&k| spare[k].capacity() >= size);
@@ -110,8 +110,7 @@ impl<T> Spare<T> {
 }
 
 impl Symbolic {
-    /// Orders and analyses `pattern`; `layout` holds a place for each node, best where the sheet
-    /// lies flat.
+    /// Orders and analyses `pattern`. `layout` has a place for each node, best in the flat sheet.
     pub fn new(pattern: &Pattern, layout: &[Vector3<f64>]) -> Self {
         let parts = dissect(pattern, layout);
         let mut order = vec![0u32; pattern.nodes()];
@@ -137,12 +136,12 @@ impl Symbolic {
         Self { order: fronts.iter().flat_map(|f| f.nodes.iter().copied()).collect(), fronts }
     }
 
-    /// Numbers that the factor holds.
+    /// The number of values in the factor.
     pub fn factor_len(&self) -> usize {
         self.fronts.iter().map(|f| 3 * f.nodes.len() * f.unknowns()).sum()
     }
 
-    /// Multiplications of one factorization.
+    /// The number of multiplications of one factorization.
     pub fn work(&self) -> f64 {
         let front = |f: &Front| {
             let (own, m) = (3.0 * f.nodes.len() as f64, f.unknowns() as f64);
@@ -152,11 +151,11 @@ impl Symbolic {
     }
 
     /// Factors the matrix of these block values into the memory of `factor` and solves for `x`,
-    /// which is the right side, then the solution; where it fails, `x` is as it was. `stop` is
-    /// asked before every front.
+    /// which is the right-hand side, then the solution. `x` does not change where it fails. `stop`
+    /// is asked before every front.
     ///
     /// # Errors
-    /// [`Halt`]: the matrix is not positive definite, or `stop` said so.
+    /// [`Halt`]: the matrix is not positive definite, or `stop` returned true.
     pub fn factor_and_solve<T: Real>(
         &self,
         values: &[Matrix3<f64>],
@@ -175,7 +174,7 @@ impl Symbolic {
         Ok(())
     }
 
-    /// Solves in place: `x` is the right side, then the solution; held nodes are left as they are.
+    /// Solves in place: `x` is the right-hand side, then the solution. Held nodes do not change.
     pub fn solve<T: Real>(&self, factor: &Factor<T>, x: &mut [Vector3<f64>]) {
         let Some(root) = self.fronts.len().checked_sub(1) else { return };
         let mut y = self.ordered(x);
@@ -185,7 +184,7 @@ impl Symbolic {
     }
 }
 
-/// A factorization under way.
+/// A running factorization.
 struct Solve<'w, T> {
     symbolic: &'w Symbolic,
     values: &'w [Matrix3<f64>],
@@ -193,17 +192,17 @@ struct Solve<'w, T> {
     stop: &'w Stop<'w>,
 }
 
-/// What a front leaves to its parent.
+/// The contribution of a front to its parent.
 struct Left<T> {
-    /// The matrix over its border, lower triangle by columns.
+    /// The matrix of its border, the lower triangle by columns.
     border: Vec<T>,
-    /// The right side over its border.
+    /// The right-hand side of its border.
     right: Vec<T>,
 }
 
 impl<T: Real> Solve<'_, T> {
-    /// Factors the front `k` and all below it, whose columns are the last of `columns` and whose
-    /// right sides are `y`, which becomes the solution's first half.
+    /// Factors the front `k` and all below it. Their columns are the last of `columns`, and their
+    /// right-hand sides are `y`, which becomes the result of the forward substitution.
     fn eliminate(&self, k: usize, columns: &mut [Vec<T>], y: &mut [T]) -> Result<Left<T>, Halt> {
         let front = &self.symbolic.fronts[k];
         let Some((mine, below)) = columns.split_last_mut() else { return Err(Halt::Stopped) };
@@ -225,7 +224,7 @@ impl<T: Real> Solve<'_, T> {
         Ok(Left { border, right: front.forward(mine, y, &rights) })
     }
 
-    /// Gives the memory of a border back: the right side is left.
+    /// Releases the memory of a border; the right-hand side is kept.
     fn recycle(&self, left: Left<T>) -> Vec<T> {
         self.spare.give(left.border);
         left.right
@@ -241,7 +240,7 @@ impl<T: Real> Solve<'_, T> {
             [] => Ok(vec![]),
             [a] => Ok(vec![self.eliminate(a, columns, y)?]),
             [a, b, ..] => {
-                // Children come one after the other, each after all below it.
+                // Children follow each other, each after all fronts below it.
                 let (left, right) = columns.split_at_mut(columns.len() - (b - a));
                 let (left_y, right_y) = y.split_at_mut(self.symbolic.fronts[a].weight);
                 let (a, b) = join_if(
@@ -276,7 +275,7 @@ fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fro
     let child_runs =
         part.children.iter().map(|&c| runs(fronts[c].border.iter().map(|&i| row(i)), own)).collect();
     let mut entries: Vec<_> = part.nodes.iter().map(|&i| (i, row(i), row(i), false)).collect();
-    // Kept are blocks of row i and column j with i < j; the front wants the later node as the row.
+    // Blocks are stored with row i < column j, but a front has the later node as the row.
     entries.extend(
         later.iter().map(|&(first, last, slot, last_is_row)| (slot, row(last), row(first), !last_is_row)),
     );
@@ -284,7 +283,7 @@ fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fro
     Front { nodes: part.nodes, border, children: part.children, child_runs, entries, weight }
 }
 
-/// Rows that follow one another, taken together; the `own` first ones and the others apart.
+/// Runs of consecutive rows; no run crosses the first `own` rows.
 fn runs(rows: impl Iterator<Item = u32>, own: u32) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (child, parent) in rows.enumerate() {

@@ -1,22 +1,22 @@
 //! Nested dissection: an order of elimination that keeps the factor of a sheet's matrix sparse.
 //!
-//! The nodes are laid out in space (where the panels lay before sewing: flat), cut in two about the
-//! middle again and again (George 1973); the nodes of one half that are coupled to the other are
-//! the separator and come last. Of the cuts across each side that with the smallest separator is
-//! taken (see [`halve`]). Cost O(n log n). The order is only as good as the layout, but right for
-//! any.
+//! Method: the nodes have places (those of the panels before sewing, where they are flat) and are
+//! bisected recursively (George 1973). The nodes of one half that are coupled to the other half are
+//! the separator and come last. Of the cuts across each axis, the one with the smallest separator
+//! is chosen (see `bisection`). Cost: O(n log n). Limit: the order is only as good as the layout,
+//! but valid for any.
 
 mod bisection;
 
 use crate::linear::Pattern;
-use bisection::Halves;
+use bisection::Bisector;
 use nalgebra::Vector3;
 
-/// Parts of at most this many nodes are not cut further: a dense block of some 50 unknowns is
-/// cheaper than more fronts.
+/// Parts of at most this many nodes are not bisected: a dense block of some 50 unknowns is cheaper
+/// than more fronts.
 const LEAF_NODES: usize = 16;
 
-/// Rounds of [`smoothed`]: half a cell out of line becomes a twentieth.
+/// Rounds of [`smoothed`]: an offset of half a cell becomes a twentieth.
 const ROUNDS: usize = 8;
 
 /// One part of the tree: the nodes eliminated there, after those of its children.
@@ -32,15 +32,15 @@ pub struct Part {
 pub fn dissect(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Part> {
     let n = pattern.nodes();
     let neighbours = Neighbours::new(pattern);
-    let mut halves = Halves::new(layout, &neighbours);
+    let mut bisector = Bisector::new(layout, &neighbours);
     let mut parts = Vec::new();
     let all: Vec<u32> = (0..n as u32).filter(|&i| !pattern.is_held(i)).collect();
-    cut(all, &mut halves, &mut parts);
+    cut(all, &mut bisector, &mut parts);
     parts
 }
 
-/// The layout with each node moved to the middle of those that it is coupled to, a few times over:
-/// rows that stand out of line, and meshes without any, can then be cut straight.
+/// The layout after some rounds in which each node moves to the mean of the nodes that it is
+/// coupled to, so that uneven rows and irregular meshes can be cut straight.
 pub fn smoothed(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let neighbours = Neighbours::new(pattern);
     let mut layout = layout.to_vec();
@@ -50,7 +50,7 @@ pub fn smoothed(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Vector3<f64>>
     layout
 }
 
-/// The middle of a node and its neighbours.
+/// The mean of a node and its neighbours.
 fn middle(i: u32, near: &[u32], layout: &[Vector3<f64>]) -> Vector3<f64> {
     let sum = near.iter().fold(layout[i as usize], |sum, &j| sum + layout[j as usize]);
     sum / (near.len() + 1) as f64
@@ -89,16 +89,16 @@ impl Neighbours {
 }
 
 /// Adds the parts of `nodes` and returns the index of their root.
-fn cut(nodes: Vec<u32>, halves: &mut Halves<'_>, parts: &mut Vec<Part>) -> usize {
+fn cut(nodes: Vec<u32>, bisector: &mut Bisector<'_>, parts: &mut Vec<Part>) -> usize {
     if nodes.len() <= LEAF_NODES {
         parts.push(Part { nodes, children: Vec::new() });
         return parts.len() - 1;
     }
-    let [low, high, separator] = halves.of(nodes);
+    let [low, high, separator] = bisector.of(nodes);
     let mut children = Vec::new();
     for half in [low, high] {
         if !half.is_empty() {
-            children.push(cut(half, halves, parts));
+            children.push(cut(half, bisector, parts));
         }
     }
     parts.push(Part { nodes: separator, children });

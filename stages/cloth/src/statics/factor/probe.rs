@@ -1,21 +1,21 @@
 //! Results that show which arithmetic a machine has.
 //!
-//! Two things make the bits of a drape depend on the machine. The kernels of `faer` take the widest
-//! vectors that the processor has, and cut their products by the sizes of its caches, so that sums
-//! come in another order. The C library picks other versions of `exp`, `sin` and their kin where
-//! the processor has fused multiplication, and another release has other ones. Cost: some tens of
-//! milliseconds. Limit: two machines that agree here may differ where nothing was probed.
+//! Two things make the bits of a drape depend on the machine. The kernels of `faer` use the widest
+//! vectors of the processor and block their products by the sizes of its caches, so that the order
+//! of sums differs. The C library uses other versions of `exp`, `sin` and similar functions where
+//! the processor has fused multiplication, and in other releases. Cost: some tens of milliseconds.
+//! Limit: two machines that agree here may differ where nothing was probed.
 
 use super::dense::probe_factor;
 
-/// Unknowns of the factor that is probed, and its rows: as large as the fronts of a fine mesh, so
-/// that its products are cut.
+/// Unknowns and rows of the probed factor: as large as the fronts of a fine mesh, so that its
+/// products are blocked.
 const COLUMNS: usize = 512;
 const ROWS: usize = 700;
-/// Arguments of each function.
+/// Number of arguments of each function.
 const ARGUMENTS: usize = 64;
 
-/// Numbers that are the same on two machines whose arithmetic is.
+/// Numbers that are equal on two machines of equal arithmetic.
 #[must_use]
 pub fn probe() -> Vec<f64> {
     let mut found = probe_factor::<f64>(ROWS, COLUMNS);

@@ -1,24 +1,25 @@
-//! The numbers of a factor: of single or of double precision.
+//! The scalar of a factor: single or double precision.
 //!
-//! A factor in single precision takes half of the memory and of the time. Its solution is held
-//! against the matrix in double precision and refined (Wilkinson 1963; Carson, Higham 2018); where
-//! that does not help, the matrix is too ill conditioned, and is factored in double precision.
+//! A factor in single precision takes half of the memory and of the time. Its solution is checked
+//! with the matrix in double precision and refined (iterative refinement: Wilkinson 1963; Carson,
+//! Higham 2018). Where that does not converge, the matrix is too ill conditioned and is factored in
+//! double precision.
 
 use faer::traits::RealField;
 use std::iter::Sum;
 use std::ops::{AddAssign, Div, Mul, Sub, SubAssign};
 
-/// How precise the factor of each step's matrix is.
+/// Precision of the factor of the matrix of each step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Precision {
-    /// Single where that solves the step well, else double.
+    /// Single precision where it solves the step well enough, otherwise double.
     #[default]
     Mixed,
-    /// Always double.
+    /// Always double precision.
     Double,
 }
 
-/// A number of a factor.
+/// A scalar of a factor.
 pub trait Real:
     RealField
     + Copy
@@ -32,9 +33,9 @@ pub trait Real:
 {
     /// Zero.
     const ZERO: Self;
-    /// The nearest number.
+    /// The nearest number of this precision.
     fn of(value: f64) -> Self;
-    /// Of double precision, the same number.
+    /// The same number in double precision.
     fn wide(self) -> f64;
 }
 

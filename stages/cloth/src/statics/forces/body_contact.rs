@@ -1,7 +1,11 @@
-//! The body under the cloth: from which distance it presses, how near a move may lead, and what was
-//! seen of it.
+//! Contact of cloth with the body: the distance at which contact begins at each node, how near a
+//! move may lead, and a cache of distances.
+//!
+//! Method: a quadratic penalty within a thickness of the surface, so that vertices rest outside it.
+//! Cost: one distance query per node that may be near. Limits: see `clearance` for what lies
+//! between vertices, and `ridges` for sharp features.
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use nalgebra::Vector3;
 use toile_geometry::signed_distance::Nearest;
 
@@ -10,22 +14,22 @@ type Vec3 = Vector3<f64>;
 /// Share of the offset that a move leaves between a node and the body.
 const GUARD: f64 = 0.5;
 
-/// Share of the offset below which a node that the guard stops is one that the layer cannot carry.
-const PRESSED: f64 = 0.6;
+/// Share of the offset below which a node that the guard stops counts as overloaded.
+const OVERLOADED: f64 = 0.6;
 
-/// How much stiffer contact becomes that cannot carry a node.
+/// Factor by which the contact of an overloaded node becomes stiffer.
 const STIFFER: f64 = 4.0;
 
-/// Beyond this it does not, N/m: in half a millimetre it carries 50 kg.
+/// Greatest stiffness that it reaches, N/m: in half a millimetre it carries 50 kg.
 const STIFFEST: f64 = 1e6;
 
-/// What a bound on a distance is widened by against rounding, m.
+/// Allowance for rounding in bounds on a distance, m.
 pub(crate) const NUDGE: f64 = 1e-9;
 
-/// Share of the offset up to which a node that has touched keeps its place on the body.
+/// Distance, as a share of the offset, up to which a node in contact keeps its anchor.
 pub(crate) const NEAR: f64 = 1.5;
 
-/// The body and how cloth rests on it.
+/// Contact of the nodes with the body.
 #[derive(Debug, Clone)]
 pub struct BodyContact<'a> {
     /// The body.
@@ -38,28 +42,28 @@ pub struct BodyContact<'a> {
     pub offset: f64,
     /// How deep inside the body a node is still pushed out, m.
     pub depth: f64,
-    /// Edges of the sheet and their rest lengths: between two nodes on a curved body an edge sags.
+    /// Edges of the sheet and their rest lengths: an edge between two nodes on a curved body dips
+    /// below them.
     pub edges: Vec<([u32; 2], f64)>,
-    /// Whether edges must stay outside the body, too; otherwise they may sag into it as far as
+    /// Whether edges must stay outside the body, too; otherwise they may dip into it as far as
     /// keeps the girth right.
-    pub clear: bool,
-    /// Whether the layer grows under nodes that are pressed to the guard, so that it carries them.
-    pub grows: bool,
-    /// Whether contact becomes stiffer under nodes that lie in the body, until it brings them out:
-    /// cloth that is sewn through a body, or around another, may be too tight for it to come out by
-    /// itself.
-    pub hard: bool,
-    /// Whether cloth may pass through the body, which pushes it out all the same.
-    pub passes: bool,
+    pub keeps_edges_out: bool,
+    /// Whether the offset of overloaded nodes grows until contact carries them.
+    pub grows_offsets: bool,
+    /// Whether contact becomes stiffer at nodes inside the body until they are outside: cloth that
+    /// is sewn through a body may be too tight to come out otherwise.
+    pub stiffens_inside: bool,
+    /// Whether moves may lead into the body, which then pushes the cloth out.
+    pub lets_through: bool,
     /// Stiffness of contact, N/m per node.
     pub stiffness: Vec<f64>,
     /// Nodes that pressed harder than their contact can carry in the last step.
-    pub pressed: Vec<u32>,
+    pub overloaded: Vec<u32>,
     #[cfg(toile_without = "body")]
     pub(crate) never: std::convert::Infallible,
 }
 
-/// How far a node was from the body when that was last looked up: it bounds how far it can be now.
+/// The distance of a node from the body at its last query: it bounds the distance now.
 #[derive(Debug, Clone, Copy)]
 pub struct DistanceCache {
     /// Where the node was.
@@ -70,46 +74,44 @@ pub struct DistanceCache {
     pub exact: bool,
 }
 
-/// What a node sees of the body: how far it is, and the place that presses, if any does.
+/// The result of a contact query of one node: its distance, and the nearest place if it is near.
 pub type ContactQuery = (DistanceCache, Option<Nearest>);
 
 impl BodyContact<'_> {
     /// How near the body a move may lead node `i`, m.
     pub(crate) fn guard(&self, i: usize) -> f64 {
-        GUARD * if self.grows { self.offset } else { self.offsets[i] }
+        GUARD * if self.grows_offsets { self.offset } else { self.offsets[i] }
     }
 
-    /// Lets the layer under node `i` grow if it lies at its bottom. A stiff sheet presses harder on
-    /// a few nodes than the layer can carry; the guard would stop them at every step, and nothing
-    /// would come to rest.
+    /// Increases the offset of node `i` if it is overloaded. A stiff sheet presses harder on a few
+    /// nodes than their contact can carry. Without this the guard would stop them at every step,
+    /// and nothing would come to rest.
     pub(crate) fn grow(&mut self, i: usize, distance: f64) {
-        if distance < PRESSED * self.offset {
+        if distance < OVERLOADED * self.offset {
             self.offsets[i] += GUARD * self.offset;
         }
     }
 
-    /// Takes a node that the guard stops at the bottom of its layer for one that presses harder
-    /// than its contact carries.
-    pub(crate) fn press(&mut self, i: usize, distance: f64) {
-        if distance < PRESSED * self.offsets[i] {
-            self.pressed.push(i as u32);
+    /// Marks a node that the guard has stopped as overloaded if it lies too near.
+    pub(crate) fn mark_overloaded(&mut self, i: usize, distance: f64) {
+        if distance < OVERLOADED * self.offsets[i] {
+            self.overloaded.push(i as u32);
         }
     }
 
-    /// Makes contact stiffer where the last step pressed a node to the guard: its share of the
-    /// sheet is too small for what comes together there, and held by the guard alone it would never
-    /// rest.
-    pub(crate) fn stiffen(&mut self) {
-        self.pressed.sort_unstable();
-        self.pressed.dedup();
-        for i in self.pressed.drain(..) {
+    /// Makes contact stiffer at overloaded nodes. Their share of the sheet is too small for the
+    /// load there; if the guard alone held them they would never come to rest.
+    pub(crate) fn stiffen_overloaded(&mut self) {
+        self.overloaded.sort_unstable();
+        self.overloaded.dedup();
+        for i in self.overloaded.drain(..) {
             let stiffness = &mut self.stiffness[i as usize];
             *stiffness = (*stiffness * STIFFER).min(stiffness.max(STIFFEST));
         }
     }
 
-    /// Moves the offsets of touching nodes outwards where the edges between them would dip into a
-    /// convex body, but for edges that are held off it themselves.
+    /// Increases the offsets of nodes in contact where the edges between them would dip into a
+    /// convex body. Edges that `is_held` are left out: `ridges` keeps them off the body.
     pub(crate) fn allow_for_sag(
         &mut self,
         near: &[Option<Nearest>],
@@ -131,20 +133,21 @@ impl BodyContact<'_> {
         for (i, sag) in sags.into_iter().enumerate() {
             // A polygon around a circle has its length when its corners stand a third of the sag
             // outside.
-            let least = if self.clear { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
+            let least =
+                if self.keeps_edges_out { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
             self.offsets[i] = self.offsets[i].max(self.offset + least);
         }
     }
 
-    /// How far to look for the body around `p`; not at all where what was `seen` earlier tells that
-    /// it is far.
-    pub(crate) fn reach(&self, p: &Vec3, offset: f64, seen: Option<&DistanceCache>) -> Option<f64> {
+    /// The radius within which to query the body around `p`; `None` where the `cached` distance
+    /// shows that it is far.
+    pub(crate) fn reach(&self, p: &Vec3, offset: f64, cached: Option<&DistanceCache>) -> Option<f64> {
         let within = offset + self.depth;
-        let Some(seen) = seen else { return Some(within) };
-        let way = (p - seen.at).norm();
-        match seen.distance - way > NEAR * offset {
+        let Some(cached) = cached else { return Some(within) };
+        let moved = (p - cached.at).norm();
+        match cached.distance - moved > NEAR * offset {
             true => None,
-            false if seen.exact => Some(within.min(seen.distance.abs() + way + NUDGE)),
+            false if cached.exact => Some(within.min(cached.distance.abs() + moved + NUDGE)),
             false => Some(within),
         }
     }

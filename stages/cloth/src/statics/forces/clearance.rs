@@ -1,14 +1,14 @@
-//! Cloth clear of the body between its vertices, too.
+//! Body clearance: whether triangles dip into the body between their vertices.
 //!
-//! Vertices rest a thickness outside; on a curved body the triangle between them hangs nearer, by
-//! the square of its length over eight radii, and dips in where the mesh is coarse. Here triangles
-//! near the body are looked at on a lattice of points, and what each lacks is handed to its
-//! corners, which then stand off farther. Where the body shows its triangles, what passes through
-//! these between the points is found as well: an edge between two facets is finer than the lattice.
-//! Cost: a distance a lattice point and a look at the body's tree a triangle, once the cloth is at
-//! rest. Limits: features finer than the lattice of a body that shows no triangles.
+//! Vertices rest a thickness outside the body. On a curved body the triangle between them is
+//! nearer, by the square of its length over eight radii, and dips in where the mesh is coarse.
+//! Method: the distance is evaluated on a lattice of points of each triangle near the body, and
+//! what is missing is added to the offsets of its corners. Where the body has triangles, crossings
+//! with them between the points are found as well. Cost: a distance per lattice point and a query
+//! of the tree of the body per triangle, once the cloth is at rest. Limits: features finer than the
+//! lattice, of a body without triangles.
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -23,31 +23,30 @@ const SPACING: f64 = 0.006;
 /// Most points along an edge.
 const MOST: usize = 8;
 
-/// Triangles that one task looks after.
+/// Triangles per parallel task.
 const CHUNK: usize = 64;
 
-/// Places at which a triangle passes through facets that are looked at, with the middles between
-/// them.
+/// Crossings of a triangle with facets that are evaluated, with the middles between them, at most.
 const MOST_PLACES: usize = 12;
 
 /// The least distance that lattice points must keep, m.
 pub const GAP: f64 = 2e-4;
 
-/// Least radius of the body whose bulge between vertices is looked for, m.
+/// Least radius of the body at which dips between vertices are found, m.
 pub(crate) const LEAST_RADIUS: f64 = 0.02;
 
-/// What a look at the triangles found.
+/// The clearance of all triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clearance {
-    /// How much farther out each node must stand, m.
+    /// What must be added to the offset of each node, m.
     pub lacks: Vec<f64>,
     /// The deepest point inside the body, m; 0 where none is.
     pub depth: f64,
-    /// How many dips there are: triangles that dip in, and such as pass through facets.
+    /// The number of triangles that dip in or cross facets.
     pub triangles: usize,
 }
 
-/// Looks at every triangle that may dip into the body.
+/// Evaluates the clearance of every triangle that may dip into the body.
 #[must_use]
 pub fn clearance(sheet: &Sheet, body: &dyn CollisionSurface, x: &[Vec3]) -> Clearance {
     let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
@@ -84,8 +83,8 @@ pub fn clearance(sheet: &Sheet, body: &dyn CollisionSurface, x: &[Vec3]) -> Clea
     out
 }
 
-/// Adds what triangles with a node `near` the body lack that pass through its facets: as deep as
-/// the middles lie between the places where they do.
+/// Adds the depth of triangles with a node `near` the body that cross its facets: that of the
+/// middles between their crossings.
 fn add_crossings(
     sheet: &Sheet,
     body: &dyn CollisionSurface,
@@ -111,7 +110,7 @@ fn add_crossings(
     }
 }
 
-/// Hands the lattice's points but the corners to `visit`.
+/// Visits the points of the lattice except the corners.
 pub(crate) fn lattice([a, b, c]: &[Vec3; 3], mut visit: impl FnMut(Vec3)) {
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
     let n = ((longest / SPACING).ceil() as usize).clamp(2, MOST);

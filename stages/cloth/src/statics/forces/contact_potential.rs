@@ -1,29 +1,28 @@
-//! How hard cloth presses on cloth that is nearer than a thickness: a spring at first, a wall in
-//! the end.
+//! The potential of cloth that is nearer to cloth than a thickness: a spring, then a barrier.
 //!
-//! Down to half of the thickness `t` the energy is `k/2 (t - d)^2` of the distance `d`; below it
-//! goes on as a logarithm, with the same slope and curvature where they meet (the two-stage
-//! potential of offset geometric contact, Chen et al. 2025). A spring alone carries no more than
-//! `k t`: under a greater load layers would lie on each other without any distance, held only by
-//! the search for the first impact, and nothing could move any more.
+//! Down to half of the thickness `t` the energy is `k/2 (t - d)^2` of the distance `d`. Below, it
+//! continues as a logarithm with the same slope and curvature (the two-stage potential of offset
+//! geometric contact, Chen et al. 2025). A spring alone carries no more than `k t`: under a greater
+//! load the distance of two layers would vanish, only collision detection would hold them apart,
+//! and nothing could move any more. Cost: O(1).
 
-/// Share of the thickness below which the wall goes on straight: layers that start in one place
-/// have no distance.
+/// Share of the thickness below which the barrier is continued by a parabola: layers that start in
+/// one place have no distance.
 const NEAREST: f64 = 1e-3;
 
 /// Energy, force and curvature at one distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPotential {
-    /// J.
+    /// Energy, J.
     pub energy: f64,
-    /// N, positive apart.
+    /// Repulsive force, N.
     pub force: f64,
-    /// N/m.
+    /// Curvature, N/m.
     pub curvature: f64,
 }
 
 impl ContactPotential {
-    /// Of two features so far apart, above 0 m, for a stiffness in N/m and a thickness in m.
+    /// The potential at a distance above 0 m, for a stiffness in N/m and a thickness in m.
     pub(crate) fn of(stiffness: f64, thickness: f64, distance: f64) -> Self {
         let half = 0.5 * thickness;
         if distance >= half {

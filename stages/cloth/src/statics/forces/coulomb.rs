@@ -1,20 +1,21 @@
-//! Friction of one point: a potential of how far it has slid from its anchor, whose slope nears
-//! Coulomb's limit.
+//! Regularised Coulomb friction of one point, as a potential of its tangential displacement from an
+//! anchor.
 //!
-//! The potential is `limit * soft * (sqrt(1 + (s / soft)^2) - 1)` of the way `s` along the surface:
-//! a spring where the point has hardly moved, the limit where it slides. Its matrix is positive
-//! semi-definite.
+//! The potential is `limit * tol * (sqrt(1 + (s / tol)^2) - 1)` of the tangential displacement `s`,
+//! with the slip tolerance `tol`: a spring at small displacements, whose force approaches Coulomb's
+//! limit at large ones. Its matrix is positive semi-definite. Cost: O(1). Limit: a point that holds
+//! creeps by about the slip tolerance.
 
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// How far behind an anchor is dragged, in soft ways: friction is then half of its limit, so that
-/// what slides stops with some to spare.
+/// Distance at which a sliding point drags its anchor behind it, in slip tolerances. Friction is
+/// then half of its limit, so that a sliding point can stop.
 const SLIP_RETURN: f64 = 0.577;
 
-/// The way that a point slides before friction comes near its limit, m: at this way it is 0.7 of
-/// it. Longer converges sooner; cloth creeps that far before it holds.
+/// Slip tolerance: the tangential displacement at which friction is 0.7 of its limit, m. A longer
+/// one converges sooner, but cloth creeps farther before it holds.
 pub(crate) const SLIP_TOLERANCE: f64 = 1e-4;
 
 /// A point held near its anchor.
@@ -28,30 +29,30 @@ pub(crate) struct Coulomb {
 }
 
 impl Coulomb {
-    /// The way from the anchor along the surface, m.
-    pub(crate) fn way(&self, p: &Vec3) -> Vec3 {
+    /// The tangential displacement from the anchor, m.
+    pub(crate) fn displacement(&self, p: &Vec3) -> Vec3 {
         let d = p - self.anchor;
         d - self.normal * self.normal.dot(&d)
     }
 
-    /// The same in soft ways, and the root of one plus its square.
+    /// The displacement in slip tolerances, and the root of one plus its square.
     fn slide(&self, p: &Vec3) -> (Vec3, f64) {
-        let along = self.way(p) / SLIP_TOLERANCE;
+        let along = self.displacement(p) / SLIP_TOLERANCE;
         (along, (1.0 + along.norm_squared()).sqrt())
     }
 
-    /// J.
+    /// The potential, J.
     pub(crate) fn value(&self, p: &Vec3) -> f64 {
         self.limit * SLIP_TOLERANCE * (self.slide(p).1 - 1.0)
     }
 
-    /// N.
+    /// The gradient of the potential, N.
     pub(crate) fn gradient(&self, p: &Vec3) -> Vec3 {
         let (along, root) = self.slide(p);
         along * (self.limit / root)
     }
 
-    /// N/m.
+    /// The matrix of second derivatives, N/m.
     pub(crate) fn matrix(&self, p: &Vec3) -> Matrix3<f64> {
         let (along, root) = self.slide(p);
         let flat = Matrix3::identity() - self.normal * self.normal.transpose();

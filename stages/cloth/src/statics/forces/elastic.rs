@@ -1,6 +1,5 @@
-//! What a level's sheet resists with, in the form the static solver wants: the energies of the
-//! chosen models, their places in its matrix, and the part of it that never changes, which is
-//! summed once a pattern.
+//! The elastic energy of the sheet of a level: the energies of the chosen models, their places in
+//! the matrix, and the constant part of the matrix, which is summed once per pattern. Cost: O(n).
 
 use crate::energy::bending::Creases;
 use crate::energy::{Band, Bands, Cloth, Models, Places, Projection, Resistance, Subset, Vec3};
@@ -8,8 +7,8 @@ use crate::error::ClothError;
 use crate::linear::Pattern;
 use nalgebra::Matrix3;
 
-/// Rounds of smoothing before the folds of a state are taken that a coarser mesh has handed on:
-/// they lie along its edges.
+/// Rounds of smoothing before the folds of a prolonged state are taken over, which lie along the
+/// edges of the coarser mesh.
 const ROUNDS: usize = 4;
 
 /// The elastic energy of a sheet.
@@ -17,13 +16,13 @@ pub struct Elastic {
     energies: Vec<Box<dyn Resistance>>,
     /// The corners of the triangles.
     faces: Vec<[u32; 3]>,
-    /// Where the blocks are in the matrix of the sheet alone.
+    /// The places of the blocks in the matrix of the sheet alone.
     own: Layout,
-    /// The same among those of contacts.
+    /// The same in the matrix with contacts.
     placed: Layout,
 }
 
-/// A matrix's places for each energy, and the sum of what never changes.
+/// The places of each energy in a matrix, and the sum of the constant part.
 #[derive(Debug, Clone, Default)]
 struct Layout {
     places: Vec<Places>,
@@ -48,11 +47,11 @@ impl Clone for Elastic {
 }
 
 impl Elastic {
-    /// The models of a cloth, elastic bands on it, and creases: the numbers of hinges among its
-    /// inner edges, and the angle between the outsides of each hinge's sheets at rest, radians.
+    /// The models of a cloth with its elastic bands and creases. A crease is the index of a hinge
+    /// among the inner edges, and the rest angle between the outsides of its sheets, radians.
     ///
     /// # Errors
-    /// What the models find in a fabric.
+    /// Faults that the models find in a fabric.
     pub fn new(
         models: Models,
         cloth: &Cloth<'_>,
@@ -70,7 +69,7 @@ impl Elastic {
         Ok(Self { energies, faces, own: Layout::default(), placed: Layout::default() })
     }
 
-    /// Makes bending so many times stiffer; it counts from the next [`Self::bind`] on.
+    /// Makes bending so many times stiffer, from the next [`Self::bind`] on.
     pub fn scale_bending(&mut self, by: f64) {
         self.energies.iter_mut().for_each(|e| e.scale_bending(by));
     }
@@ -80,12 +79,13 @@ impl Elastic {
         &self.faces
     }
 
-    /// Hands out the groups of nodes that it couples.
+    /// Visits the groups of nodes that it couples.
     pub fn couplings(&self, visit: &mut dyn FnMut(&[u32])) {
         self.energies.iter().for_each(|e| e.couplings(visit));
     }
 
-    /// Looks up where its blocks go. The pattern must hold its couplings, but those of held nodes.
+    /// Finds the places of its blocks. The pattern must contain its couplings, except those of held
+    /// nodes.
     pub fn bind(&mut self, pattern: &Pattern) {
         let places: Vec<Places> = self.energies.iter().map(|e| e.places(pattern)).collect();
         let mut constant = vec![Matrix3::zeros(); pattern.blocks()];
@@ -97,8 +97,8 @@ impl Elastic {
         self.placed = self.own.clone();
     }
 
-    /// Follows into a wider pattern, in which the slots of that of the last [`Self::bind`] are at
-    /// `slots`.
+    /// Finds its places in a wider pattern, in which the slots of the pattern of the last
+    /// [`Self::bind`] are at `slots`.
     pub fn follow(&mut self, pattern: &Pattern, slots: &[u32]) {
         let blocks = pattern.blocks();
         self.placed.places = self.own.places.iter().map(|p| p.moved(slots, blocks)).collect();
@@ -107,7 +107,7 @@ impl Elastic {
         slots.iter().zip(&self.own.constant).for_each(|(&s, c)| self.placed.constant[s as usize] = *c);
     }
 
-    /// Remembers the stress that the linear model predicts for `moves` from `x`.
+    /// Keeps the stress that the linear model predicts for `moves` from `x`.
     pub fn predict(&mut self, x: &[Vec3], moves: &[Vec3]) {
         self.energies.iter_mut().for_each(|e| e.predict(x, moves));
     }
@@ -118,13 +118,13 @@ impl Elastic {
         self.energies.iter().filter(|e| !e.is_hysteretic()).map(|e| e.value(x)).sum()
     }
 
-    /// The potential of what holds its folds, J.
+    /// The potential of bending hysteresis, J.
     #[must_use]
     pub fn value_of_holds(&self, x: &[Vec3]) -> f64 {
         self.energies.iter().filter(|e| e.is_hysteretic()).map(|e| e.value(x)).sum()
     }
 
-    /// Adds the derivative of both, N.
+    /// Adds the gradient of both, N.
     pub fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]) {
         self.energies.iter().for_each(|e| e.add_gradient(x, gradient));
     }
@@ -145,25 +145,26 @@ impl Elastic {
         !self.held().is_empty()
     }
 
-    /// Holds all folds as they are at `x`. What a coarser mesh has `handed` on is smoothed first.
-    pub(crate) fn hold(&mut self, x: &[Vec3], handed: bool) {
+    /// Sets the angles of bending hysteresis to the folds at `x`, which are smoothed first where
+    /// they are prolonged from a coarser mesh.
+    pub(crate) fn hold(&mut self, x: &[Vec3], is_prolonged: bool) {
         if self.energies.iter().any(|e| e.is_hysteretic()) {
-            let smooth = if handed { smoothed(&self.faces, x) } else { x.to_vec() };
+            let smooth = if is_prolonged { smoothed(&self.faces, x) } else { x.to_vec() };
             self.energies.iter_mut().for_each(|e| e.hold(&smooth));
         }
     }
 
-    /// The angles at which folds are held, hinge by hinge; empty where nothing is.
+    /// The angles of bending hysteresis, by hinge; empty where there is none.
     pub(crate) fn held(&self) -> &[f64] {
         self.energies.iter().find(|e| e.is_hysteretic()).map_or(&[], |e| e.held())
     }
 
-    /// Holds folds at these angles, if they are of as many hinges.
+    /// Sets the angles of bending hysteresis, if there are as many as hinges.
     pub(crate) fn hold_at(&mut self, held: &[f64]) {
         self.energies.iter_mut().for_each(|e| e.hold_at(held));
     }
 
-    /// Drags the held angles along behind folds that turn.
+    /// Moves the angles of bending hysteresis along with folds that turn.
     pub(crate) fn drag(&mut self, x: &[Vec3]) {
         self.energies.iter_mut().for_each(|e| e.drag(x));
     }
@@ -179,13 +180,13 @@ impl Elastic {
         }
     }
 
-    /// Takes over what a part has predicted of its triangles, and where it holds its folds.
-    pub(crate) fn learn(&mut self, subset: &Subset, part: &Self) {
-        self.energies.iter_mut().zip(&part.energies).for_each(|(e, p)| e.learn(subset, p.as_ref()));
+    /// Takes over the predicted stress and the angles of bending hysteresis of a subset.
+    pub(crate) fn merge(&mut self, subset: &Subset, part: &Self) {
+        self.energies.iter_mut().zip(&part.energies).for_each(|(e, p)| e.merge(subset, p.as_ref()));
     }
 }
 
-/// Places drawn to the middle of their neighbours, but those on an open edge.
+/// Positions smoothed towards the mean of their neighbours, except on open edges.
 fn smoothed(faces: &[[u32; 3]], x: &[Vec3]) -> Vec<Vec3> {
     let mut sides: Vec<[u32; 2]> = faces.iter().flat_map(sides).collect();
     sides.sort_unstable();
@@ -209,7 +210,7 @@ fn smoothed(faces: &[[u32; 3]], x: &[Vec3]) -> Vec<Vec3> {
     smooth
 }
 
-/// A triangle's sides, each with its lower node first.
+/// The sides of a triangle, each with its lower node first.
 fn sides(t: &[u32; 3]) -> [[u32; 2]; 3] {
     [0, 1, 2].map(|k| {
         let (a, b) = (t[k], t[(k + 1) % 3]);

@@ -1,11 +1,12 @@
-//! Friction of cloth on cloth: what each contact remembers from step to step.
+//! Friction of cloth on cloth: what each contact keeps from step to step.
 //!
-//! The point that rubs is the way between the two features of a contact (see [`Contact`]); its
-//! anchor lies where the way was when they first touched. Features change as cloth slides, and
-//! above a corner or a side of its partner a vertex swaps triangles with every rounding. So what is
-//! remembered is how far the two have slid, not where: a contact goes on from the way of the last
-//! step, and a new one takes over from contacts of the same two places, which share a node on
-//! either side with it.
+//! Friction acts on the vector between the two features of a contact (see `Contact`); its anchor
+//! is that vector at the first touch. Features change as cloth slides, and a vertex above a corner
+//! or a side of its partner changes triangles with every rounding. So the tangential displacement
+//! is kept, not the place: a contact goes on from its displacement in the last step, and a new
+//! contact takes over the mean displacement of contacts that share a node with it on either side.
+//!
+//! Cost: O(n log n) of the contacts.
 
 use crate::contact::friction::FrictionContact;
 use crate::statics::forces::contact::Contact;
@@ -20,24 +21,26 @@ pub(crate) fn between(nodes: &[u32; 4], weights: &[f64; 4], x: &[Vec3]) -> Vec3 
 }
 
 impl FrictionContact {
-    pub(crate) fn rub(&self) -> Coulomb {
+    /// The friction of this contact.
+    pub(crate) fn coulomb(&self) -> Coulomb {
         Coulomb { normal: self.normal, anchor: self.anchor, limit: self.friction * self.load }
     }
 
+    /// The vector between its features at `x`, m.
     pub(crate) fn at(&self, x: &[Vec3]) -> Vec3 {
         between(&self.nodes, &self.weights, x)
     }
 
-    /// Drags the anchor along, where the features have slid on in this step: what holds beside
-    /// cloth that slides goes on holding.
-    pub(crate) fn drag(&mut self, x: &[Vec3]) {
-        let (rub, at) = (self.rub(), self.at(x));
-        if (rub.way(&at) - self.slid).norm() > SLIP_TOLERANCE {
-            self.anchor = rub.dragged(&at);
+    /// Moves the anchor along where the features have slid in this step. A contact that holds
+    /// beside sliding cloth goes on holding.
+    pub(crate) fn drag_anchors(&mut self, x: &[Vec3]) {
+        let (friction, at) = (self.coulomb(), self.at(x));
+        if (friction.displacement(&at) - self.slid).norm() > SLIP_TOLERANCE {
+            self.anchor = friction.dragged(&at);
         }
     }
 
-    /// Nodes of the first feature.
+    /// How many nodes the first feature has.
     fn first(&self) -> usize {
         if self.weights[1] > 0.0 { 2 } else { 1 }
     }
@@ -57,7 +60,7 @@ impl FrictionContact {
 #[derive(Debug, Clone, Copy)]
 struct Opposite {
     nodes: [u32; 2],
-    /// From the larger node's side to the smaller's, or the other way round: -1.
+    /// 1 if the first feature has the smaller node, otherwise -1.
     sign: f64,
 }
 
@@ -67,67 +70,73 @@ impl Opposite {
     }
 }
 
-/// What contacts of two places have slid.
+/// The tangential displacement of a contact, for one pair of opposite nodes.
 #[derive(Debug, Clone, Copy)]
 struct Slid {
     nodes: [u32; 2],
-    way: Vec3,
+    displacement: Vec3,
     load: f64,
 }
 
-/// How far the contacts of the last step have slid where the cloth is now.
-pub(crate) struct Memory<'a> {
+/// The contacts of the last step with their tangential displacements at the present places.
+pub(crate) struct FrictionHistory<'a> {
     friction_contacts: &'a [FrictionContact],
-    ways: Vec<Vec3>,
-    /// By the nodes; made when it is first asked.
+    displacements: Vec<Vec3>,
+    /// Sorted by nodes; made on first use.
     slid: Option<Vec<Slid>>,
 }
 
-impl<'a> Memory<'a> {
+impl<'a> FrictionHistory<'a> {
     pub(crate) fn of(friction_contacts: &'a [FrictionContact], x: &[Vec3]) -> Self {
-        let ways = friction_contacts.iter().map(|g| g.rub().way(&g.at(x))).collect();
-        Self { friction_contacts, ways, slid: None }
+        let displacements = friction_contacts.iter().map(|c| c.coulomb().displacement(&c.at(x))).collect();
+        Self { friction_contacts, displacements, slid: None }
     }
 
     /// The friction of a contact that presses with `force`.
-    pub(crate) fn grip(&mut self, c: &Contact, x: &[Vec3], force: f64, friction: f64) -> FrictionContact {
+    pub(crate) fn friction_contact(
+        &mut self,
+        c: &Contact,
+        x: &[Vec3],
+        force: f64,
+        friction: f64,
+    ) -> FrictionContact {
         let (nodes, weights, normal) = (c.nodes, c.weights, c.normal);
         let anchor = between(&nodes, &weights, x);
-        let mut grip =
+        let mut new =
             FrictionContact { nodes, weights, normal, anchor, slid: Vec3::zeros(), load: force, friction };
-        grip.slid = match self.friction_contacts.binary_search_by_key(&grip.key(), FrictionContact::key) {
+        new.slid = match self.friction_contacts.binary_search_by_key(&new.key(), FrictionContact::key) {
             Ok(k) => {
-                // While Newton's steps swing between touching and not, friction follows the mean.
-                grip.load = 0.5 * (self.friction_contacts[k].load + force);
-                self.ways[k]
+                // Contact may alternate from step to step, so the limit of friction is a mean.
+                new.load = 0.5 * (self.friction_contacts[k].load + force);
+                self.displacements[k]
             }
-            Err(_) => self.taken_over(&grip),
+            Err(_) => self.taken_over(&new),
         };
-        grip.anchor -= grip.slid;
-        grip
+        new.anchor -= new.slid;
+        new
     }
 
-    /// The mean way of the contacts of the same two places.
-    fn taken_over(&mut self, grip: &FrictionContact) -> Vec3 {
-        let slid = self.slid.get_or_insert_with(|| all_slid(self.friction_contacts, &self.ways));
-        let (mut way, mut load) = (Vec3::zeros(), 0.0);
-        for c in grip.opposites() {
+    /// The mean displacement of the contacts that share a node on either side, weighted by load.
+    fn taken_over(&mut self, new: &FrictionContact) -> Vec3 {
+        let slid = self.slid.get_or_insert_with(|| all_slid(self.friction_contacts, &self.displacements));
+        let (mut sum, mut load) = (Vec3::zeros(), 0.0);
+        for c in new.opposites() {
             let start = slid.partition_point(|s| s.nodes < c.nodes);
             for s in slid[start..].iter().take_while(|s| s.nodes == c.nodes) {
-                way += s.way * (c.sign * s.load);
+                sum += s.displacement * (c.sign * s.load);
                 load += s.load;
             }
         }
-        if load > 0.0 { way / load } else { way }
+        if load > 0.0 { sum / load } else { sum }
     }
 }
 
-fn all_slid(friction_contacts: &[FrictionContact], ways: &[Vec3]) -> Vec<Slid> {
-    let one = |(g, way): (&FrictionContact, &Vec3)| -> Vec<Slid> {
-        g.opposites().map(|c| Slid { nodes: c.nodes, way: way * c.sign, load: g.load }).collect()
+fn all_slid(friction_contacts: &[FrictionContact], displacements: &[Vec3]) -> Vec<Slid> {
+    let one = |(g, d): (&FrictionContact, &Vec3)| -> Vec<Slid> {
+        g.opposites().map(|c| Slid { nodes: c.nodes, displacement: d * c.sign, load: g.load }).collect()
     };
-    let mut slid: Vec<Slid> = friction_contacts.iter().zip(ways).flat_map(one).collect();
-    // Stable, so that sums are the same every time.
+    let mut slid: Vec<Slid> = friction_contacts.iter().zip(displacements).flat_map(one).collect();
+    // A stable sort: the order of the sums decides their rounding.
     slid.sort_by_key(|s| s.nodes);
     slid
 }

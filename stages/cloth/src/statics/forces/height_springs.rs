@@ -1,29 +1,28 @@
-//! What keeps cloth at its height while it is sewn.
+//! Height springs: hold each panel at its mean height while its seams close.
 //!
-//! Cloth without weight and friction that seams draw around a body slides along it to where the
-//! body is thinner: off the shoulders, down to the waist. A spring for each panel, along the
-//! vertical alone, holds the mean height of its nodes near that at which it was placed: its edges
-//! stay free to come together.
+//! Cloth without weight and friction that is sewn around a body slides along it to where the body
+//! is thinner: off the shoulders, down to the waist. A vertical spring for each panel holds the
+//! mean height of its nodes near the initial one, and leaves its edges free to move. Cost: O(n).
 
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// Springs along one direction to where groups of nodes started, in the mean.
+/// Springs along one direction between the mean position of groups of nodes and the initial one.
 #[derive(Debug, Clone)]
 pub struct HeightSprings {
-    /// The direction, of length 1.
+    /// The unit direction.
     pub up: Vec3,
-    /// How far up each node started, m.
+    /// Initial height of each node, m.
     pub heights: Vec<f64>,
     /// The group of each node.
     pub groups: Vec<u32>,
-    /// Stiffness for each kilogram of a node, N/m/kg.
+    /// Stiffness per kilogram, N/m/kg.
     pub stiffness: f64,
 }
 
 impl HeightSprings {
-    /// How far each group has gone up in the mean, m, and its mass, kg.
+    /// Mean rise of each group, m, and its mass, kg.
     fn ways(&self, x: &[Vec3], masses: &[f64]) -> Vec<(f64, f64)> {
         let count = self.groups.iter().max().map_or(0, |g| *g as usize + 1);
         let mut ways = vec![(0.0, 0.0); count];
@@ -47,8 +46,8 @@ impl HeightSprings {
         }
     }
 
-    /// Adds an upper bound of the matrix, which couples all nodes of a group: that of a spring for
-    /// each node.
+    /// Adds an upper bound of the matrix, which would couple all nodes of a group: that of one
+    /// spring per node.
     pub(crate) fn add_matrix(&self, masses: &[f64], values: &mut [Matrix3<f64>]) {
         let along = self.up * self.up.transpose();
         for (v, m) in values.iter_mut().zip(masses) {

@@ -1,7 +1,7 @@
-//! Everything that acts on cloth: what each force stores, its slope and its curvature, and the
-//! system that sums them.
+//! All forces on cloth, each with its potential, gradient and matrix, and the system that sums
+//! them.
 //!
-//! Depends on no other room.
+//! Depends on no other folder.
 
 pub mod body_contact;
 pub mod clearance;

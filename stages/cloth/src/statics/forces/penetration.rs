@@ -1,41 +1,40 @@
-//! Whether the body comes through the cloth between its vertices.
+//! Limb penetration test: whether the body passes through the cloth between its vertices.
 //!
-//! Vertices stay outside the body, but a coarse triangle may be wider than a limb: an arm then
-//! comes through its inside, and a finer mesh would be pushed off it on the wrong side. A triangle
-//! that only sags into a bulge sees the body's surface on one side; one that a limb comes through
-//! reaches the limb's axis (the medial axis, Blum 1967), from where the surface is as near on all
-//! sides. So the nearest places of the surface are looked up for a lattice of points on each
-//! triangle. Cost: one distance a triangle; for those that hang deep one for every third point of
-//! the lattice, and for those points that the first ones leave in doubt, since depth changes no
-//! faster than the place. Limits: limbs thinner than twice [`LEAST_RADIUS`].
+//! Vertices stay outside the body, but a coarse triangle may be wider than a limb. An arm then
+//! passes through its inside, and a finer mesh would be pushed off it on the wrong side. Method: a
+//! triangle that a limb passes through reaches the medial axis of the limb (Blum 1967), where the
+//! nearest places of the surface lie on opposite sides. A triangle that only dips into a bulge has
+//! them on one side. So the normals at the nearest places are compared for a lattice of points on
+//! each triangle. Cost: one distance per triangle, and for deep triangles one for every third point
+//! of the lattice, and for those other points for which the first ones do not decide. Limits: limbs
+//! thinner than twice [`LEAST_RADIUS`].
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use crate::statics::forces::clearance::{LEAST_RADIUS, lattice};
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Points deeper than this may lie near a limb's axis, m; what lies nearer to an edge of the body
-/// has sagged over it.
+/// Least depth of a point that may lie near the axis of a limb, m.
 const DEEP: f64 = 0.5 * LEAST_RADIUS;
 
 /// Cosine of the angle between the surface's normals on both sides of a limb's axis, at most: 120
 /// degrees, over which a chord of a circle hangs half of its radius deep.
 const OPPOSED: f64 = -0.5;
 
-/// Of so many points of a lattice one is asked first.
+/// One of so many points of a lattice is evaluated first.
 const EVERY: usize = 3;
 
-/// A point of a triangle's lattice.
+/// A point of the lattice of a triangle.
 #[derive(Clone, Copy)]
 struct Spot {
-    /// Which of the triangles.
+    /// The index of the triangle.
     of: usize,
     at: Vec3,
 }
 
-/// Triangles with all vertices outside the body that a limb comes through.
+/// The number of triangles with all vertices outside the body that a limb passes through.
 #[must_use]
 pub(crate) fn pierced(sheet: &Sheet, body: &dyn CollisionSurface, x: &[Vec3]) -> usize {
     let hanging = hanging(sheet, body, x);
@@ -61,10 +60,10 @@ fn spots(triangles: &[[Vec3; 3]]) -> (Vec<Spot>, Vec<Spot>) {
     (first, rest)
 }
 
-/// A place, how deep it lies in the body (m), and the direction out of it.
+/// A place, its depth in the body (m), and the direction out of the body.
 type Depth = (Vec3, f64, Vec3);
 
-/// For each triangle, how deep its points lie; those far outside are told by what was looked for.
+/// The depths of the points of each triangle; for points far outside, a bound.
 fn depths(triangles: &[[Vec3; 3]], body: &dyn CollisionSurface, spots: &[Spot]) -> Vec<Vec<Depth>> {
     let places: Vec<Vec3> = spots.iter().map(|s| s.at).collect();
     let reaches: Vec<f64> = triangles.iter().map(|t| 2.0 * radius(t)).collect();
@@ -87,7 +86,7 @@ fn hanging(sheet: &Sheet, body: &dyn CollisionSurface, x: &[Vec3]) -> Vec<[Vec3;
     (0..wide.len()).filter(deep).map(|i| wide[i]).collect()
 }
 
-/// Whether the surface is nearest on opposite sides for points of a triangle.
+/// Whether the nearest places of points of a triangle lie on opposite sides.
 fn is_pierced(points: &[Depth]) -> bool {
     let deep: Vec<Vec3> = points.iter().filter(|(_, depth, _)| *depth > DEEP).map(|(.., out)| *out).collect();
     deep.iter().enumerate().any(|(i, a)| deep[..i].iter().any(|b| a.dot(b) < OPPOSED))

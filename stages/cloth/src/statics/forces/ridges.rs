@@ -4,12 +4,13 @@
 //! A contact is a place where the distance of cloth and feature is a local minimum: inside both
 //! edges, or inside the triangle (or on one of its sides, where no triangle of the side is nearer),
 //! on the outer side of the feature (the pairs that Chen et al. 2025 name feasible). It presses as
-//! cloth presses on cloth (see `contact_potential`), so that no load brings the two together, and
-//! rubs by Coulomb's law with what it has slid remembered from step to step. Moves end before cloth
-//! passes a feature (`ridges/limit`). Cloth that a body passes through all the same, as what a
-//! coarser mesh left may, is pushed back out over the feature that it is the least way behind.
+//! cloth presses on cloth (see `contact_potential`), so that no load brings the two together.
+//! Friction is regularised Coulomb friction; the tangential displacement of each contact is kept
+//! from step to step. Moves end before cloth passes a feature (`ridges/limit`). A coarser mesh may
+//! leave cloth that the body passes through: that cloth is pushed back out over the nearest
+//! feature.
 //!
-//! Cost: a look for pairs where the cloth has moved by more than a thickness; none for a body
+//! Cost: a search for pairs when the cloth has moved by more than a thickness; nothing for a body
 //! without sharp features.
 
 use crate::energy::Subset;
@@ -28,18 +29,19 @@ mod limit;
 
 type Vec3 = Vector3<f64>;
 
-/// How far beyond a thickness pairs are looked for, in thicknesses: they hold until the cloth has
-/// moved that far.
+/// How far beyond one thickness pairs are sought, in thicknesses. The pairs stay valid until the
+/// cloth has moved that far.
 const SLACK: f64 = 1.5;
 
-/// Cloth that is farther than this from every feature is not looked at again until it has moved
-/// that far, m.
+/// Cloth that is farther than this from every feature is not checked again until it has moved that
+/// far, m.
 const FAR: f64 = 0.03;
 
-/// Edges or triangles that one task looks after.
+/// Edges or triangles per parallel task.
 const CHUNK: usize = 512;
 
-/// Cloth may be this share of its longest edge behind a feature and is still pushed back over it.
+/// Greatest depth behind a feature from which cloth is pushed back over it, as a share of its
+/// longest edge.
 const DEEPEST: f64 = 0.5;
 
 /// An edge of the cloth, or a triangle of it, and a feature.
@@ -63,14 +65,14 @@ struct Near {
     inside: bool,
 }
 
-/// What presses on the cloth.
+/// A contact between the cloth and a feature.
 #[derive(Debug, Clone, Copy)]
 struct Contact {
     pair: Pair,
     weights: [f64; 3],
     /// Unit direction in which the feature presses.
     normal: Vec3,
-    press: ContactPotential,
+    potential: ContactPotential,
     /// Where friction holds the closest point, and how far it had slid at the step's start.
     anchor: Vec3,
     slid: Vec3,
@@ -91,14 +93,16 @@ pub struct Ridges {
     longest: f64,
     /// Stiffness at each node, N/m.
     stiffness: Vec<f64>,
-    /// Coefficient of friction at each node, and what is taken away of it for a while.
+    /// Coefficient of friction at each node.
     friction: Vec<f64>,
-    away: Vec<f64>,
+    /// The coefficients while friction is disabled.
+    disabled_friction: Vec<f64>,
     /// Pairs that may touch, sorted.
     pairs: Vec<Pair>,
     /// Edges of the cloth among them, sorted.
     bridges: Vec<[u32; 2]>,
-    /// Where the nodes were when the pairs were sought; nothing where they hold for one step alone.
+    /// Where the nodes were when the pairs were sought; `None` where the pairs hold for one step
+    /// only.
     at: Option<Vec<Vec3>>,
     /// How far they may move from there, m.
     slack: f64,
@@ -107,8 +111,7 @@ pub struct Ridges {
     contacts: Vec<Contact>,
 }
 
-/// What of cloth and body a pair is about that is pushed out over one feature only: an edge of the
-/// cloth, or a corner of the body.
+/// An edge of the cloth or a corner of the body: each is pushed out over one feature only.
 type Part = [u32; 3];
 
 impl Pair {
@@ -161,29 +164,29 @@ impl Contact {
         self.nodes().map(|(i, w)| x[i as usize] * w).sum()
     }
 
-    fn rub(&self) -> Option<Coulomb> {
+    fn coulomb(&self) -> Option<Coulomb> {
         let limit = self.friction * self.load;
         (limit > 0.0).then_some(Coulomb { normal: self.normal, anchor: self.anchor, limit })
     }
 
-    fn rubbed(&self, x: &[Vec3]) -> f64 {
-        self.rub().map_or(0.0, |r| r.value(&self.point(x)))
+    fn friction_energy(&self, x: &[Vec3]) -> f64 {
+        self.coulomb().map_or(0.0, |r| r.value(&self.point(x)))
     }
 }
 
 impl Ridges {
-    /// The sharp features of a body and a sheet that lies on it as `support` says; nothing where
-    /// there are none.
-    pub(crate) fn new(support: &BodyContact<'_>, sheet: &Sheet) -> Option<Self> {
+    /// The sharp features of the body of `body_contact`, and the sheet that lies on it; `None`
+    /// where the body has none.
+    pub(crate) fn new(body_contact: &BodyContact<'_>, sheet: &Sheet) -> Option<Self> {
         Some(Self {
-            sharp: support.body.sharp()?,
+            sharp: body_contact.body.sharp()?,
             edges: sheet.distinct_edges().map(|(ends, _)| ends).collect(),
             triangles: sheet.triangles().to_vec(),
-            thickness: support.offset,
+            thickness: body_contact.offset,
             longest: sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max),
-            stiffness: support.stiffness.clone(),
-            friction: support.friction.clone(),
-            away: vec![0.0; support.friction.len()],
+            stiffness: body_contact.stiffness.clone(),
+            friction: body_contact.friction.clone(),
+            disabled_friction: vec![0.0; body_contact.friction.len()],
             pairs: Vec::new(),
             bridges: Vec::new(),
             at: None,
@@ -193,19 +196,19 @@ impl Ridges {
         })
     }
 
-    /// Takes friction away, and gives it back.
+    /// Disables friction, or enables it again.
     pub(crate) fn swap_friction(&mut self) {
-        std::mem::swap(&mut self.friction, &mut self.away);
+        std::mem::swap(&mut self.friction, &mut self.disabled_friction);
         self.contacts.clear();
     }
 
-    /// Whether an edge of the cloth lies over an edge of the body: its nodes need not stand off for
-    /// it.
+    /// Whether an edge of the cloth lies over an edge of the body, so that its nodes need no larger
+    /// offset.
     pub(crate) fn bridges(&self, edge: [u32; 2]) -> bool {
         self.bridges.binary_search(&[edge[0].min(edge[1]), edge[0].max(edge[1])]).is_ok()
     }
 
-    /// Sees to it that the pairs hold for `moves` from `x`.
+    /// Makes the pairs valid for `moves` from `x`.
     pub(crate) fn seek(&mut self, x: &[Vec3], moves: &[Vec3]) {
         let most = self.slack * self.slack;
         let stays = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| (p + m - a).norm_squared() < most;
@@ -213,7 +216,7 @@ impl Ridges {
             return;
         }
         if self.pairs.is_empty() {
-            // Most of a garment's way leads past nothing sharp.
+            // Most garments meet no sharp feature on most of their way.
             if self.is_far(x, moves) {
                 self.at = None;
                 return;
@@ -240,7 +243,7 @@ impl Ridges {
         self.bridges.dedup();
     }
 
-    /// Whether the whole cloth keeps clear of every feature on its way.
+    /// Whether the whole cloth stays away from every feature on its way.
     fn is_far(&self, x: &[Vec3], moves: &[Vec3]) -> bool {
         let nothing = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
         let (low, high) = x.iter().zip(moves).fold(nothing, |(low, high), (p, m)| {
@@ -254,7 +257,7 @@ impl Ridges {
     /// Pairs that may come nearer than `reach` on the way, sorted.
     fn pairs_about(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
         let reach = Vec3::repeat(reach);
-        let look = |kind: Kind, nodes: [u32; 3]| {
+        let search = |kind: Kind, nodes: [u32; 3]| {
             let (mut low, mut high) = (x[nodes[0] as usize], x[nodes[0] as usize]);
             for i in nodes {
                 let (p, q) = (x[i as usize], x[i as usize] + moves[i as usize]);
@@ -266,34 +269,41 @@ impl Ridges {
             found
         };
         let edges = self.edges.par_iter().with_min_len(CHUNK);
-        let mut pairs: Vec<Pair> = edges.flat_map_iter(|[a, b]| look(Kind::EdgeEdge, [*a, *b, *b])).collect();
+        let mut pairs: Vec<Pair> =
+            edges.flat_map_iter(|[a, b]| search(Kind::EdgeEdge, [*a, *b, *b])).collect();
         let triangles = self.triangles.par_iter().with_min_len(CHUNK);
-        pairs.par_extend(triangles.flat_map_iter(|t| look(Kind::VertexTriangle, *t)));
+        pairs.par_extend(triangles.flat_map_iter(|t| search(Kind::VertexTriangle, *t)));
         pairs.sort_unstable();
         pairs
     }
 
-    /// Looks for cloth that the body passes through at `x`: each edge and each corner is then
-    /// pushed back over the nearest feature.
-    pub(crate) fn look_for_pierced(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
+    /// Finds cloth that the body passes through at `x`. Each such edge and corner is then pushed
+    /// back over the nearest feature.
+    pub(crate) fn find_pierced(&mut self, body_contact: &BodyContact<'_>, x: &[Vec3]) {
         let deepest = self.deepest();
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], deepest);
-        self.pierced = self.sunk(support, &pairs, x, deepest).into_iter().map(|p| p.1).collect();
+        self.pierced = self.sunk(body_contact, &pairs, x, deepest).into_iter().map(|p| p.1).collect();
         self.pierced.sort_unstable();
     }
 
-    /// Adds what the body has come to pass through since: cloth that is led around the end of a
+    /// Adds cloth that the body has passed through since: cloth that goes around the end of a
     /// feature may sink behind another.
-    fn look_again_for_pierced(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
+    fn find_newly_pierced(&mut self, body_contact: &BodyContact<'_>, x: &[Vec3]) {
         let known: Vec<Part> = self.pierced.iter().map(Pair::part).collect();
-        let sunk = self.sunk(support, &self.pairs, x, self.thickness);
+        let sunk = self.sunk(body_contact, &self.pairs, x, self.thickness);
         self.pierced.extend(sunk.into_iter().filter(|(part, _)| !known.contains(part)).map(|p| p.1));
         self.pierced.sort_unstable();
     }
 
-    /// The pairs of which the cloth lies behind the feature, less than `deepest` and inside the
-    /// body: the nearest of each part.
-    fn sunk(&self, support: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3], deepest: f64) -> Vec<(Part, Pair)> {
+    /// The pairs whose cloth lies inside the body, behind the feature by less than `deepest`: the
+    /// nearest of each part.
+    fn sunk(
+        &self,
+        body_contact: &BodyContact<'_>,
+        pairs: &[Pair],
+        x: &[Vec3],
+        deepest: f64,
+    ) -> Vec<(Part, Pair)> {
         let near = |p: &Pair| {
             let near = p.near(&self.sharp, x);
             let is_in = near.inside
@@ -309,7 +319,7 @@ impl Ridges {
             (0..p.count()).map(|k| x[p.nodes[k] as usize] * n.weights[k]).sum::<Vec3>()
         };
         let points: Vec<Vec3> = hidden.iter().map(point).collect();
-        let inside = support.body.nearest(&points, &vec![deepest; points.len()]);
+        let inside = body_contact.body.nearest(&points, &vec![deepest; points.len()]);
         let sunk = hidden.iter().zip(inside).filter(|(_, n)| n.is_some_and(|n| n.distance < 0.0));
         let mut by_part: Vec<(Part, f64, Pair)> =
             sunk.map(|((p, n), _)| (p.part(), n.distance, *p)).collect();
@@ -318,20 +328,22 @@ impl Ridges {
         by_part.into_iter().map(|p| (p.0, p.2)).collect()
     }
 
-    /// Whether the body passes through the cloth at `x` about a feature: through its triangles, or
-    /// its edges lead into the body, as through a thin plate, where no side of a feature tells.
-    pub(crate) fn is_pierced(&self, support: &BodyContact<'_>, x: &[Vec3]) -> bool {
+    /// Whether the body passes through the cloth at `x` near a feature: through its triangles, or
+    /// because an edge of the cloth leads into the body. The second finds a thin plate, where the
+    /// side of a feature does not decide.
+    pub(crate) fn is_pierced(&self, body_contact: &BodyContact<'_>, x: &[Vec3]) -> bool {
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.deepest());
-        !leads_in(support, &pairs, x).is_empty() || !self.sunk(support, &pairs, x, self.deepest()).is_empty()
+        !leads_in(body_contact, &pairs, x).is_empty()
+            || !self.sunk(body_contact, &pairs, x, self.deepest()).is_empty()
     }
 
-    /// How far behind a feature cloth is pushed back over it, m.
+    /// Greatest depth behind a feature from which cloth is pushed back over it, m.
     fn deepest(&self) -> f64 {
         (DEEPEST * self.longest).max(2.0 * self.thickness)
     }
 
-    /// The pairs that touch at `x`, with the distance that they have, negative where the body
-    /// passes through the cloth.
+    /// The pairs in contact at `x`, with their distance, negative where the body passes through the
+    /// cloth.
     fn feasible(&self, x: &[Vec3]) -> Vec<(Pair, Near, f64)> {
         let mut found: Vec<(Pair, Near, f64)> = Vec::new();
         let mut on_sides: Vec<(Pair, Near)> = Vec::new();
@@ -357,8 +369,8 @@ impl Ridges {
         found
     }
 
-    /// Adds corners that are nearest to a side, once, where neither triangle of it is nearer by its
-    /// inside.
+    /// Adds each corner of the body that is nearest to a side of a triangle once, unless it is
+    /// nearest to the inside of one of the triangles of that side.
     fn add_sides(&self, on_sides: &[(Pair, Near)], found: &mut Vec<(Pair, Near, f64)>) {
         let has = |p: &Pair, side: &[u32; 2]| side.iter().all(|i| p.nodes.contains(i));
         let inside: Vec<Pair> = found.iter().map(|(p, ..)| *p).filter(|p| p.count() == 3).collect();
@@ -373,31 +385,30 @@ impl Ridges {
         }
     }
 
-    /// Finds the contacts at `x`, and what friction holds of them: call it at the start of each
-    /// step.
-    pub(crate) fn touch(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
+    /// Finds the contacts at `x` and their friction. Call it at the start of each step.
+    pub(crate) fn update_contacts(&mut self, body_contact: &BodyContact<'_>, x: &[Vec3]) {
         let sharp = &self.sharp;
         self.pierced.retain(|p| {
             let near = p.near(sharp, x);
             sharp.feature(p.feature).side(&near.off) == Side::In || !near.inside
         });
-        self.look_again_for_pierced(support, x);
+        self.find_newly_pierced(body_contact, x);
         let before = std::mem::take(&mut self.contacts);
-        let ways: Vec<Vec3> = before
+        let displacements: Vec<Vec3> = before
             .iter()
             .map(|c| {
-                let rub = Coulomb { normal: c.normal, anchor: c.anchor, limit: 1.0 };
-                rub.way(&c.point(x))
+                let friction = Coulomb { normal: c.normal, anchor: c.anchor, limit: 1.0 };
+                friction.displacement(&c.point(x))
             })
             .collect();
         self.contacts = self
             .feasible(x)
             .iter()
-            .map(|(pair, near, distance)| self.contact(pair, near, *distance, x, (&before, &ways)))
+            .map(|(pair, near, distance)| self.contact(pair, near, *distance, x, (&before, &displacements)))
             .collect();
     }
 
-    fn press(&self, pair: &Pair, near: &Near, distance: f64) -> ContactPotential {
+    fn potential(&self, pair: &Pair, near: &Near, distance: f64) -> ContactPotential {
         let parts = (0..pair.count()).map(|k| near.weights[k] * self.stiffness[pair.nodes[k] as usize]);
         let stiffness = parts.sum();
         match distance > 0.0 {
@@ -412,27 +423,27 @@ impl Ridges {
         near: &Near,
         distance: f64,
         x: &[Vec3],
-        (before, ways): (&[Contact], &[Vec3]),
+        (before, displacements): (&[Contact], &[Vec3]),
     ) -> Contact {
-        let press = self.press(pair, near, distance);
-        let rubs = (0..pair.count()).map(|k| near.weights[k] * self.friction[pair.nodes[k] as usize]);
+        let potential = self.potential(pair, near, distance);
+        let coefficients = (0..pair.count()).map(|k| near.weights[k] * self.friction[pair.nodes[k] as usize]);
         let mut contact = Contact {
             pair: *pair,
             weights: near.weights,
             normal: near.off / distance,
-            press,
+            potential,
             anchor: Vec3::zeros(),
             slid: Vec3::zeros(),
-            load: press.force,
-            friction: rubs.sum(),
+            load: potential.force,
+            friction: coefficients.sum(),
         };
         match before.iter().position(|c| c.pair == *pair) {
             Some(k) => {
-                // While Newton's steps swing between touching and not, friction follows the mean.
-                contact.load = 0.5 * (before[k].load + press.force);
-                contact.slid = ways[k];
+                // Contact may alternate from step to step, so the limit of friction is a mean.
+                contact.load = 0.5 * (before[k].load + potential.force);
+                contact.slid = displacements[k];
             }
-            None => contact.slid = taken_over(pair, before, ways),
+            None => contact.slid = taken_over(pair, before, displacements),
         }
         contact.anchor = contact.point(x) - contact.slid;
         contact
@@ -440,20 +451,20 @@ impl Ridges {
 
     /// Energy at `x`, J; friction is that of the step's start.
     pub(crate) fn value(&self, x: &[Vec3]) -> f64 {
-        let press: f64 = self.feasible(x).iter().map(|(p, n, d)| self.press(p, n, *d).energy).sum();
-        press + self.contacts.iter().map(|c| c.rubbed(x)).sum::<f64>()
+        let normal: f64 = self.feasible(x).iter().map(|(p, n, d)| self.potential(p, n, *d).energy).sum();
+        normal + self.contacts.iter().map(|c| c.friction_energy(x)).sum::<f64>()
     }
 
     /// The same at the step's start, whose contacts are known, J.
     pub(crate) fn value_at_start(&self, x: &[Vec3]) -> f64 {
-        self.contacts.iter().map(|c| c.press.energy + c.rubbed(x)).sum()
+        self.contacts.iter().map(|c| c.potential.energy + c.friction_energy(x)).sum()
     }
 
     /// Adds the derivative at the step's start, N.
     pub(crate) fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
         for c in &self.contacts {
-            let rub = c.rub().map_or_else(Vec3::zeros, |r| r.gradient(&c.point(x)));
-            let push = rub - c.normal * c.press.force;
+            let friction = c.coulomb().map_or_else(Vec3::zeros, |r| r.gradient(&c.point(x)));
+            let push = friction - c.normal * c.potential.force;
             c.nodes().for_each(|(i, w)| g[i as usize] += push * w);
         }
     }
@@ -462,8 +473,8 @@ impl Ridges {
     /// triangle.
     pub(crate) fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
         for c in &self.contacts {
-            let rub = c.rub().map_or_else(Matrix3::zeros, |r| r.matrix(&c.point(x)));
-            let block = c.normal * c.normal.transpose() * c.press.curvature + rub;
+            let friction = c.coulomb().map_or_else(Matrix3::zeros, |r| r.matrix(&c.point(x)));
+            let block = c.normal * c.normal.transpose() * c.potential.curvature + friction;
             for (k, (i, w)) in c.nodes().enumerate() {
                 for (j, v) in c.nodes().take(k + 1).filter(|(_, v)| w * v != 0.0) {
                     if let Some(slot) = pattern.slot(i, j) {
@@ -474,20 +485,19 @@ impl Ridges {
         }
     }
 
-    /// Drags the anchors of friction along behind cloth that slides.
-    pub(crate) fn drag(&mut self, x: &[Vec3]) {
+    /// Moves the anchors of friction along with cloth that slides.
+    pub(crate) fn drag_anchors(&mut self, x: &[Vec3]) {
         for c in &mut self.contacts {
             let at = c.point(x);
-            let Some(rub) = c.rub() else { continue };
-            if (rub.way(&at) - c.slid).norm() > SLIP_TOLERANCE {
-                let dragged = rub.dragged(&at);
-                c.anchor = dragged;
+            let Some(friction) = c.coulomb() else { continue };
+            if (friction.displacement(&at) - c.slid).norm() > SLIP_TOLERANCE {
+                c.anchor = friction.dragged(&at);
             }
         }
     }
 
-    /// What a part of the cloth has of it.
-    pub(crate) fn part(&self, cut: &Subset, nodes: &[u32]) -> Self {
+    /// The features and contacts of a subset of the cloth.
+    pub(crate) fn subset(&self, cut: &Subset, nodes: &[u32]) -> Self {
         let pick = |of: &[f64]| nodes.iter().map(|&i| of[i as usize]).collect::<Vec<f64>>();
         let knows = |of: &[u32]| cut.touches(of) && cut.has_all(of);
         let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
@@ -501,7 +511,7 @@ impl Ridges {
             longest: self.longest,
             stiffness: pick(&self.stiffness),
             friction: pick(&self.friction),
-            away: pick(&self.away),
+            disabled_friction: pick(&self.disabled_friction),
             pairs: Vec::new(),
             bridges: Vec::new(),
             at: None,
@@ -516,59 +526,58 @@ impl Ridges {
         }
     }
 
-    /// Takes back what a part has learnt; its node `k` is the node `nodes[k]` of the whole.
-    pub(crate) fn learn(&mut self, cut: &Subset, nodes: &[u32], part: &Self) {
+    /// Takes over the contacts of a subset, whose node `k` is the node `nodes[k]` of the whole.
+    pub(crate) fn merge(&mut self, cut: &Subset, nodes: &[u32], subset: &Self) {
         let whole = |p: &Pair| Pair { nodes: p.nodes.map(|i| nodes[i as usize]), ..*p };
         let knows = |p: &Pair| cut.touches(&p.nodes) && cut.has_all(&p.nodes);
         self.contacts.retain(|c| !knows(&c.pair));
-        self.contacts.extend(part.contacts.iter().map(|c| Contact { pair: whole(&c.pair), ..*c }));
+        self.contacts.extend(subset.contacts.iter().map(|c| Contact { pair: whole(&c.pair), ..*c }));
         self.contacts.sort_by_key(|c| c.pair);
         self.pierced.retain(|p| !knows(p));
-        self.pierced.extend(part.pierced.iter().map(whole));
+        self.pierced.extend(subset.pierced.iter().map(whole));
         self.pierced.sort_unstable();
     }
 
-    /// Keeps what friction holds, and what the body passes through, of the same cloth before its
-    /// fabric or its body changed.
-    pub(crate) fn go_on(&mut self, before: &Self) {
+    /// Keeps the contacts and the pierced cloth of the same body from before the fabric changed.
+    pub(crate) fn continue_from(&mut self, before: &Self) {
         if Arc::ptr_eq(&self.sharp, &before.sharp) {
             self.contacts = before.contacts.clone();
             self.pierced = before.pierced.clone();
         }
     }
 
-    /// Scales contact and its loads.
-    pub(crate) fn weigh(&mut self, factor: f64) {
+    /// Scales the stiffness of contact and its loads.
+    pub(crate) fn scale(&mut self, factor: f64) {
         self.stiffness.iter_mut().for_each(|s| *s *= factor);
         self.contacts.iter_mut().for_each(|c| c.load *= factor);
     }
 }
 
-/// The edges of the cloth among `pairs` that lead into the body from their first node, outside it.
-fn leads_in(support: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
+/// The edges of the cloth among `pairs` that lead from their first node, outside the body, into it.
+fn leads_in(body_contact: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
     let mut edges: Vec<[u32; 2]> =
         pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]).collect();
     edges.sort_unstable();
     edges.dedup();
     let from: Vec<Vec3> = edges.iter().map(|e| x[e[0] as usize]).collect();
-    let way: Vec<Vec3> = edges.iter().map(|e| x[e[1] as usize] - x[e[0] as usize]).collect();
-    let mut ends = way.clone();
-    support.body.guard(&from, &mut ends, &vec![NUDGE; edges.len()]);
-    let changed = edges.into_iter().zip(way.iter().zip(&ends)).filter(|(_, (way, end))| way != end);
+    let moves: Vec<Vec3> = edges.iter().map(|e| x[e[1] as usize] - x[e[0] as usize]).collect();
+    let mut ends = moves.clone();
+    body_contact.body.guard(&from, &mut ends, &vec![NUDGE; edges.len()]);
+    let changed = edges.into_iter().zip(moves.iter().zip(&ends)).filter(|(_, (m, end))| m != end);
     changed.map(|(e, _)| e).collect()
 }
 
-/// The mean way that contacts of the same cloth have slid.
-fn taken_over(pair: &Pair, before: &[Contact], ways: &[Vec3]) -> Vec3 {
-    let (mut way, mut load) = (Vec3::zeros(), 0.0);
-    for (c, w) in before.iter().zip(ways) {
+/// The mean tangential displacement of the contacts of the same cloth, weighted by their loads.
+fn taken_over(pair: &Pair, before: &[Contact], displacements: &[Vec3]) -> Vec3 {
+    let (mut sum, mut load) = (Vec3::zeros(), 0.0);
+    for (c, displacement) in before.iter().zip(displacements) {
         let shared = c.pair.nodes[..c.pair.count()].iter().any(|i| pair.nodes.contains(i));
         if shared && c.load > 0.0 {
-            way += w * c.load;
+            sum += displacement * c.load;
             load += c.load;
         }
     }
-    if load > 0.0 { way / load } else { way }
+    if load > 0.0 { sum / load } else { sum }
 }
 
 #[cfg(test)]

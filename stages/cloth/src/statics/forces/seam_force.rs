@@ -1,25 +1,28 @@
-//! Seams that still pull, while a garment is sewn.
+//! Seam closing forces, while a garment is sewn.
+//!
+//! The potential of a pair at gap `d` is `f sqrt(d² + s²)`, whose force is nearly constant above
+//! the softening length `s`. Cost: O(1) a pair.
 
 use crate::linear::{Pattern, add_at};
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// A seam that still pulls its two nodes together, with a force that hardly depends on the gap.
+/// The closing force of one pair of nodes, which hardly depends on the gap.
 #[derive(Debug, Clone, Copy)]
 pub struct SeamForce {
     /// The nodes.
     pub nodes: [u32; 2],
     /// Force at large gaps, N.
     pub force: f64,
-    /// Gap at which the force falls off, m.
-    pub soft: f64,
+    /// Gap below which the force falls, m.
+    pub softening: f64,
 }
 
 impl SeamForce {
     fn reach(&self, x: &[Vec3]) -> (Vec3, f64) {
         let d = x[self.nodes[1] as usize] - x[self.nodes[0] as usize];
-        (d, (d.norm_squared() + self.soft * self.soft).sqrt())
+        (d, (d.norm_squared() + self.softening * self.softening).sqrt())
     }
 
     pub(crate) fn value(&self, x: &[Vec3]) -> f64 {
@@ -36,7 +39,8 @@ impl SeamForce {
     pub(crate) fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
         let [i, j] = self.nodes;
         let (_, r) = self.reach(x);
-        // The secant stiffness: a majorant, with which Newton's step never overshoots.
+        // The secant stiffness bounds the second derivative, so that Newton's step never
+        // overshoots.
         let k = Matrix3::identity() * (self.force / r);
         values[i as usize] += k;
         values[j as usize] += k;
@@ -51,7 +55,7 @@ pub(crate) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
 }
 
-/// The widest gap of seams that still pull, m.
-pub(crate) fn widest_thread(threads: &[SeamForce], x: &[Vec3]) -> f64 {
-    threads.iter().map(|t| (x[t.nodes[0] as usize] - x[t.nodes[1] as usize]).norm()).fold(0.0, f64::max)
+/// The widest gap of seams with a closing force, m.
+pub(crate) fn widest_open_seam(seam_forces: &[SeamForce], x: &[Vec3]) -> f64 {
+    seam_forces.iter().map(|t| (x[t.nodes[0] as usize] - x[t.nodes[1] as usize]).norm()).fold(0.0, f64::max)
 }

@@ -1,15 +1,16 @@
-//! Cloth against itself: a penalty between features that are nearer than a thickness.
+//! Self-contact: a potential between features of the cloth that are nearer than a thickness.
 //!
-//! Each vertex is pressed away from the points of the sheet where its distance is a local minimum,
-//! and edges from edges where both closest points lie inside (offset geometric contact, Chen et al.
-//! 2025, names these the feasible pairs), so that nothing is counted twice. What touches rubs, by
-//! Coulomb's law (see `friction_history`).
+//! Method: offset geometric contact (Chen et al. 2025). A vertex is in contact with the points of
+//! the sheet at which its distance is a local minimum, and an edge with an edge where both closest
+//! points lie inside (the feasible pairs), so that nothing is counted twice. Friction is
+//! regularised Coulomb friction (see `friction_history`). Cost: one closest-point query per pair.
+//! Limit: pairs are found by the caller (see `newton/nearby`).
 
 use crate::contact::friction::FrictionContact;
 use crate::linear::{Pattern, add_at};
 use crate::statics::forces::contact::Contact;
 use crate::statics::forces::contact_potential::ContactPotential;
-use crate::statics::forces::friction_history::{Memory, between};
+use crate::statics::forces::friction_history::{FrictionHistory, between};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use toile_geometry::closest::Feature;
@@ -22,7 +23,7 @@ pub(crate) use intersections::MERGED;
 
 type Vec3 = Vector3<f64>;
 
-/// Pairs that may touch, and how stiffly.
+/// Pairs that may touch, their contacts and their friction.
 #[derive(Debug, Clone)]
 #[cfg_attr(not(toile_without = "self_contact"), derive(Default))]
 pub struct SelfContact {
@@ -32,32 +33,32 @@ pub struct SelfContact {
     pub thickness: f64,
     /// Mean length of the edges, m.
     pub edge: f64,
-    /// Whether many cloths lie on each other: each is then near many others.
-    pub crowded: bool,
+    /// Whether many cloths lie on each other (see `self_contact/stacked`).
+    pub stacked: bool,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
-    /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts.
-    /// Empty where there is none.
+    /// Coefficient of friction of cloth on cloth at each node; a contact has the mean of its two
+    /// sides. Empty where there is none.
     pub friction: Vec<f64>,
-    /// The friction that is taken away for a while.
-    pub away: Vec<f64>,
-    /// Layer that each node is worn in, the outer ones higher; empty where all are one.
+    /// The coefficients while friction is disabled.
+    pub disabled_friction: Vec<f64>,
+    /// Layer in which each node is worn, counted outwards; empty where all are in one layer.
     pub order: Vec<u32>,
-    /// Triangles at each node, for corners that are local minima.
+    /// How many triangles each node has, to find corners that are local minima.
     pub corners: Vec<u16>,
     /// Pairs that may touch during the step, sorted.
     pub pairs: Vec<Pair>,
-    /// Those that count as contacts while they are near, sorted; none where only their features
-    /// tell.
+    /// Pairs that count as contacts while they are near, sorted; `None` where only local minima
+    /// count.
     pub held: Option<Vec<Pair>>,
-    /// Those that touch at its start.
+    /// Pairs in contact at the start of the step.
     pub contacts: Vec<Contact>,
-    /// Their friction, one by one; empty where there is none.
+    /// The friction of each contact; empty where there is none.
     pub friction_contacts: Vec<FrictionContact>,
-    /// Edges that pass through triangles, as a coarser level's state can have it: pulled back out.
-    pub tangles: Vec<Contact>,
-    /// Nodes of the tangles: among themselves they may pass through each other to get free.
-    pub tangled: Vec<bool>,
+    /// Edges that pass through triangles, as the state of a coarser level may: they are pulled out.
+    pub intersections: Vec<Contact>,
+    /// Nodes of the intersections: they may pass through each other to get free.
+    pub intersecting: Vec<bool>,
 }
 
 #[cfg(toile_without = "self_contact")]
@@ -68,31 +69,32 @@ impl Default for SelfContact {
 }
 
 impl SelfContact {
-    /// Finds the contacts at `x`, and what friction holds of them.
-    pub fn touch(&mut self, x: &[Vec3]) {
+    /// Finds the contacts at `x` and their friction.
+    pub fn update_contacts(&mut self, x: &[Vec3]) {
         let counted = self.feasible(x);
         self.contacts = counted.iter().map(|near| self.contact(near, x)).collect();
         self.remember(&counted);
         if self.friction.is_empty() {
             return;
         }
-        let mut memory = Memory::of(&self.friction_contacts, x);
-        let grip = |c: &Contact| {
+        let mut history = FrictionHistory::of(&self.friction_contacts, x);
+        let friction = |c: &Contact| {
             // The weights of either side have the sum 1.
             let sides = c.nodes.iter().zip(&c.weights).map(|(i, w)| w.abs() * self.friction[*i as usize]);
-            memory.grip(c, x, c.press.force, 0.5 * sides.sum::<f64>())
+            history.friction_contact(c, x, c.potential.force, 0.5 * sides.sum::<f64>())
         };
-        self.friction_contacts = self.contacts.iter().map(grip).collect();
+        self.friction_contacts = self.contacts.iter().map(friction).collect();
     }
 
-    /// Takes friction away, and gives it back.
+    /// Disables friction, or enables it again.
     pub fn swap_friction(&mut self) {
-        std::mem::swap(&mut self.friction, &mut self.away);
+        std::mem::swap(&mut self.friction, &mut self.disabled_friction);
         self.friction_contacts.clear();
     }
 
-    /// Has new friction in place of that which is `replaced`, in the order of the contacts.
-    pub(crate) fn take_over(
+    /// Replaces the friction contacts that are `replaced` by new ones, in the order of the
+    /// contacts.
+    pub(crate) fn replace_friction(
         &mut self,
         replaced: impl Fn(&FrictionContact) -> bool,
         new: impl Iterator<Item = FrictionContact>,
@@ -102,9 +104,9 @@ impl SelfContact {
         self.friction_contacts.sort_by_key(FrictionContact::key);
     }
 
-    /// Drags the anchors of friction along behind cloth that slides.
-    pub fn drag(&mut self, x: &[Vec3]) {
-        self.friction_contacts.iter_mut().for_each(|g| g.drag(x));
+    /// Moves the anchors of friction along with cloth that slides.
+    pub fn drag_anchors(&mut self, x: &[Vec3]) {
+        self.friction_contacts.iter_mut().for_each(|g| g.drag_anchors(x));
     }
 
     /// The contacts at `x`, in the order of the pairs.
@@ -113,10 +115,10 @@ impl SelfContact {
         self.feasible(x).iter().map(|near| self.contact(near, x)).collect()
     }
 
-    /// The pairs that count at `x`, with their closest points.
+    /// The pairs in contact at `x`, with their closest points.
     fn feasible(&self, x: &[Vec3]) -> Vec<(Pair, Closest)> {
         let near = |p: &Pair| {
-            if self.is_tangled(p) {
+            if self.is_intersecting(p) {
                 return None;
             }
             let c = p.closest(x);
@@ -157,48 +159,48 @@ impl SelfContact {
             weights: c.weights,
             normal: c.between / c.distance,
             stiffness,
-            press: ContactPotential::of(stiffness, self.thickness, c.distance),
+            potential: ContactPotential::of(stiffness, self.thickness, c.distance),
         }
     }
 
     /// The nodes that each contact couples.
     pub fn groups(&self) -> impl Iterator<Item = &[u32; 4]> {
-        self.contacts.iter().chain(&self.tangles).map(|c| &c.nodes)
+        self.contacts.iter().chain(&self.intersections).map(|c| &c.nodes)
     }
 
     /// Energy of the contacts at `x`, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        pressure(&self.touching(x)) + self.pull(x) + self.held(x)
+        contact_energy(&self.touching(x)) + self.intersection_energy(x) + self.friction_energy(x)
     }
 
     /// The same at the step's start, whose contacts are known, J.
     #[must_use]
     pub fn value_at_start(&self, x: &[Vec3]) -> f64 {
-        pressure(&self.contacts) + self.pull(x) + self.held(x)
+        contact_energy(&self.contacts) + self.intersection_energy(x) + self.friction_energy(x)
     }
 
-    /// Energy of friction.
-    fn held(&self, x: &[Vec3]) -> f64 {
-        self.friction_contacts.iter().map(|g| g.rub().value(&g.at(x))).sum()
+    /// Energy of friction, J.
+    fn friction_energy(&self, x: &[Vec3]) -> f64 {
+        self.friction_contacts.iter().map(|g| g.coulomb().value(&g.at(x))).sum()
     }
 
-    /// Energy of what pulls crossings apart.
-    fn pull(&self, x: &[Vec3]) -> f64 {
+    /// Energy of the springs that pull intersections apart, J.
+    fn intersection_energy(&self, x: &[Vec3]) -> f64 {
         let one = |c: &Contact| {
-            let way = between(&c.nodes, &c.weights, x);
-            ContactPotential::spring(c.stiffness, self.thickness, c.normal.dot(&way).min(self.thickness))
+            let between = between(&c.nodes, &c.weights, x);
+            ContactPotential::spring(c.stiffness, self.thickness, c.normal.dot(&between).min(self.thickness))
                 .energy
         };
-        self.tangles.iter().map(one).sum()
+        self.intersections.iter().map(one).sum()
     }
 
     /// Adds the derivative at the step's start `x`, N.
     pub fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
-        for (k, c) in self.contacts.iter().chain(&self.tangles).enumerate() {
-            let mut push = c.normal * -c.press.force;
-            if let Some(grip) = self.friction_contacts.get(k) {
-                push += grip.rub().gradient(&grip.at(x));
+        for (k, c) in self.contacts.iter().chain(&self.intersections).enumerate() {
+            let mut push = c.normal * -c.potential.force;
+            if let Some(friction) = self.friction_contacts.get(k) {
+                push += friction.coulomb().gradient(&friction.at(x));
             }
             for (i, w) in c.nodes.iter().zip(&c.weights) {
                 g[*i as usize] += push * *w;
@@ -208,10 +210,10 @@ impl SelfContact {
 
     /// Adds the matrix at the step's start `x`, N/m.
     pub fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
-        for (k, c) in self.contacts.iter().chain(&self.tangles).enumerate() {
-            let mut block = c.normal * c.normal.transpose() * c.press.curvature;
-            if let Some(grip) = self.friction_contacts.get(k) {
-                block += grip.rub().matrix(&grip.at(x));
+        for (k, c) in self.contacts.iter().chain(&self.intersections).enumerate() {
+            let mut block = c.normal * c.normal.transpose() * c.potential.curvature;
+            if let Some(friction) = self.friction_contacts.get(k) {
+                block += friction.coulomb().matrix(&friction.at(x));
             }
             for a in 0..4 {
                 for b in 0..=a {
@@ -227,6 +229,7 @@ impl SelfContact {
     }
 }
 
-fn pressure(contacts: &[Contact]) -> f64 {
-    contacts.iter().map(|c| c.press.energy).sum()
+/// Energy of contacts, J.
+fn contact_energy(contacts: &[Contact]) -> f64 {
+    contacts.iter().map(|c| c.potential.energy).sum()
 }

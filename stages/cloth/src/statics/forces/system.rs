@@ -1,11 +1,13 @@
-//! Everything that acts on one level's nodes, as one potential: value, gradient and matrix.
+//! All forces on the nodes of one level, as one potential: value, gradient and matrix.
 //!
-//! Membrane, bending, weight, seams that still pull, the body (a penalty within a thickness of its
-//! surface, so that vertices rest outside it), and friction as a potential about anchors: a force
-//! that grows with the way slid and nears Coulomb's limit without reaching it, so that every state
-//! of rest keeps the law. Anchors are dragged along while the cloth moves fast. Cloth rubs on cloth
-//! in the same way (see `friction_history`). Normals and limits of friction are those of the step's
-//! start.
+//! The potential is the sum of membrane and bending energy, weight, seam closing forces, body
+//! contact (a penalty within a thickness of the surface, so that vertices rest outside it),
+//! self-contact, and regularised Coulomb friction. Friction is a potential of the tangential
+//! displacement from an anchor (see `coulomb`): its force approaches Coulomb's limit without
+//! reaching it, so that every equilibrium obeys the law. Anchors move along while the cloth moves
+//! fast. Normals and limits of friction are those of the start of the step.
+//!
+//! Cost: O(n), and one query of the body per node that may be near it.
 
 use crate::linear::Pattern;
 use crate::statics::forces::body_contact::{BodyContact, ContactQuery, DistanceCache, NEAR, NUDGE};
@@ -20,125 +22,129 @@ use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 
-/// Where a node touches the body.
+/// A node in contact with the body.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyTouch {
     /// The node.
     pub node: u32,
-    /// Outward normal of the body there.
+    /// Outward normal of the body at the contact.
     pub normal: Vec3,
-    /// Force of the body, N.
+    /// Contact force, N.
     pub force: f64,
-    /// The force that limits friction: the mean over the last steps, N.
+    /// The normal force that limits friction, a mean over the last steps, N.
     pub load: f64,
 }
 
 /// All that acts on the nodes.
 #[derive(Debug, Clone)]
 pub struct System<'a> {
-    /// The sheet's resistance.
+    /// Membrane and bending energies.
     pub elastic: Elastic,
-    /// kg per node.
+    /// Mass of each node, kg.
     pub masses: Vec<f64>,
-    /// m/s².
+    /// Acceleration of gravity, m/s².
     pub gravity: Vec3,
     /// Forces on the nodes besides their weight, N; empty where there are none.
     pub push: Vec<Vec3>,
-    /// What holds the nodes at the height where they start, if anything does.
+    /// Springs that hold the nodes at their initial height, if any.
     pub height_springs: Option<HeightSprings>,
-    /// Nodes that stay.
+    /// Nodes that do not move.
     pub pinned: Vec<bool>,
-    /// Seams that still pull.
-    pub threads: Vec<SeamForce>,
-    /// The body.
-    pub support: Option<BodyContact<'a>>,
-    /// Its sharp edges and corners.
+    /// Seam closing forces.
+    pub seam_forces: Vec<SeamForce>,
+    /// Body contact.
+    pub body_contact: Option<BodyContact<'a>>,
+    /// Contact with the sharp edges and corners of the body.
     pub ridges: Option<Ridges>,
-    /// Cloth against itself.
-    pub layers: Option<SelfContact>,
+    /// Self-contact.
+    pub self_contact: Option<SelfContact>,
     /// Nodes in contact at the start of the step.
     pub touches: Vec<BodyTouch>,
-    /// Where friction holds each node.
+    /// The anchor of the friction of each node on the body.
     pub anchors: Vec<Option<Vec3>>,
-    /// How far friction holds each node back when it first touches: what the coarser level found,
-    /// m.
+    /// Tangential displacement with which the friction of each node begins at its first contact, as
+    /// the coarser level found it, m.
     pub slides: Vec<Vec3>,
-    /// What presses each node on the body, a mean over the last steps, N.
+    /// Contact force of each node on the body, a mean over the last steps, N.
     pub loads: Vec<f64>,
-    /// What holds each node still in this step, N/m; empty where nothing does.
+    /// Stiffness that holds each node still in this step, N/m; empty where nothing does.
     pub brakes: Vec<f64>,
-    /// Nodes that are being led somewhere, and where to: they must be pinned.
-    pub pulls: Vec<(u32, Vec3)>,
-    /// Where each node was last seen from the body; empty before the first step.
-    pub seen: Vec<DistanceCache>,
+    /// Kinematic targets: pinned nodes and the places to which they move.
+    pub targets: Vec<(u32, Vec3)>,
+    /// The last known distance of each node from the body; empty before the first step.
+    pub distance_cache: Vec<DistanceCache>,
 }
 
-/// What was found at the end of a step, where the next one starts.
+/// The energy at some place, with what a step that starts there can reuse.
 #[derive(Debug, Clone)]
 pub struct Evaluation {
-    /// All energy, J.
+    /// Total energy, J.
     pub energy: f64,
-    /// The part that no contact has a share in, J.
-    pub lasting: f64,
-    /// What each node sees of the body; empty without one.
-    pub sight: Vec<ContactQuery>,
+    /// The energy that does not depend on contacts, J.
+    pub contact_free: f64,
+    /// The contact query of each node; empty without a body.
+    pub queries: Vec<ContactQuery>,
 }
 
 impl System<'_> {
-    /// The pattern of its matrix without contacts of cloth with cloth.
+    /// The pattern of its matrix without self-contact.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         Pattern::holding(&self.pinned, |visit| {
             self.elastic.couplings(visit);
-            self.threads.iter().for_each(|t| visit(&t.nodes));
+            self.seam_forces.iter().for_each(|t| visit(&t.nodes));
         })
     }
 
-    /// Nodes that elements or threads hold together, two by two.
+    /// Pairs of nodes that elements or seam forces connect.
     #[must_use]
     pub fn links(&self) -> Vec<[u32; 2]> {
         let mut links = Vec::new();
         let mut link = |nodes: &[u32]| links.extend(nodes.windows(2).map(|w| [w[0], w[1]]));
         self.elastic.couplings(&mut link);
-        self.threads.iter().for_each(|t| link(&t.nodes));
+        self.seam_forces.iter().for_each(|t| link(&t.nodes));
         links
     }
 
-    /// The body nearest to each node, if it presses there; remembers what was seen, now or by who
-    /// came here before.
-    fn look(&mut self, x: &[Vec3], sight: Option<Vec<ContactQuery>>) -> Vec<Option<Nearest>> {
-        if self.support.is_none() {
+    /// The nearest place of the body for each node near it, by `queries` where they are known.
+    /// Updates the distance cache.
+    fn nearest_on_body(&mut self, x: &[Vec3], queries: Option<Vec<ContactQuery>>) -> Vec<Option<Nearest>> {
+        if self.body_contact.is_none() {
             return vec![None; x.len()];
         }
-        let found = sight.unwrap_or_else(|| self.looks(x));
-        self.seen = found.iter().map(|(seen, _)| *seen).collect();
+        let found = queries.unwrap_or_else(|| self.query_body(x));
+        self.distance_cache = found.iter().map(|(cached, _)| *cached).collect();
         found.into_iter().map(|(_, near)| near).collect()
     }
 
-    /// Leads the pulled nodes on, by up to `farthest`; whether any of them still has a way to go.
-    pub fn pull(&self, x: &[Vec3], moves: &mut [Vec3], farthest: f64) -> bool {
-        for (node, to) in &self.pulls {
-            let way = to - x[*node as usize];
-            moves[*node as usize] = way * (farthest / way.norm().max(farthest));
+    /// Sets the moves of nodes with a target, by up to `farthest`; returns whether any of them has
+    /// not reached its target.
+    pub fn follow_targets(&self, x: &[Vec3], moves: &mut [Vec3], farthest: f64) -> bool {
+        for (node, to) in &self.targets {
+            let left = to - x[*node as usize];
+            moves[*node as usize] = left * (farthest / left.norm().max(farthest));
         }
-        self.pulls.iter().any(|(node, to)| (to - x[*node as usize]).norm() > NUDGE)
+        self.targets.iter().any(|(node, to)| (to - x[*node as usize]).norm() > NUDGE)
     }
 
-    /// What each node sees of the body. What was seen earlier saves the search, or narrows it.
-    fn looks(&self, x: &[Vec3]) -> Vec<ContactQuery> {
-        let Some(s) = &self.support else { return Vec::new() };
-        let within: Vec<Option<f64>> =
-            x.iter().enumerate().map(|(i, p)| s.reach(p, s.offsets[i], self.seen.get(i))).collect();
+    /// Queries the body for each node. Cached distances save the search, or narrow it.
+    fn query_body(&self, x: &[Vec3]) -> Vec<ContactQuery> {
+        let Some(contact) = &self.body_contact else { return Vec::new() };
+        let within: Vec<Option<f64>> = x
+            .iter()
+            .enumerate()
+            .map(|(i, p)| contact.reach(p, contact.offsets[i], self.distance_cache.get(i)))
+            .collect();
         let asked: Vec<usize> = (0..x.len()).filter(|&i| within[i].is_some()).collect();
         let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
         let reach: Vec<f64> = asked.iter().filter_map(|&i| within[i]).collect();
-        let mut found = s.body.nearest(&points, &reach).into_iter();
-        let one = |(i, p): (usize, &Vec3)| match (within[i], self.seen.get(i)) {
-            (None, Some(seen)) => (*seen, None),
+        let mut found = contact.body.nearest(&points, &reach).into_iter();
+        let one = |(i, p): (usize, &Vec3)| match (within[i], self.distance_cache.get(i)) {
+            (None, Some(cached)) => (*cached, None),
             (reach, _) => match found.next().flatten() {
                 Some(n) => {
-                    let seen = DistanceCache { at: *p, distance: n.distance, exact: true };
-                    (seen, (n.distance < NEAR * s.offsets[i]).then_some(n))
+                    let cached = DistanceCache { at: *p, distance: n.distance, exact: true };
+                    (cached, (n.distance < NEAR * contact.offsets[i]).then_some(n))
                 }
                 None => (DistanceCache { at: *p, distance: reach.unwrap_or(0.0), exact: false }, None),
             },
@@ -146,119 +152,122 @@ impl System<'_> {
         x.iter().enumerate().map(one).collect()
     }
 
-    /// Ends moves that lead into the body just outside it.
+    /// Shortens moves that lead into the body, of the nodes that `asks` selects.
     pub fn clear_of_body(&mut self, x: &[Vec3], moves: &mut [Vec3], asks: impl Fn(usize) -> bool) {
-        let sews = !self.threads.is_empty();
-        let Some(s) = self.support.as_mut().filter(|s| !s.passes) else { return };
-        let seen = &self.seen;
+        let is_sewing = !self.seam_forces.is_empty();
+        let Some(contact) = self.body_contact.as_mut().filter(|contact| !contact.lets_through) else {
+            return;
+        };
+        let cache = &self.distance_cache;
         let is_free = |i: usize| {
-            seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > s.guard(i))
+            cache
+                .get(i)
+                .is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > contact.guard(i))
         };
         let asked: Vec<usize> = (0..x.len()).filter(|&i| asks(i) && !is_free(i)).collect();
         let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
-        let gaps: Vec<f64> = asked.iter().map(|&i| s.guard(i)).collect();
+        let gaps: Vec<f64> = asked.iter().map(|&i| contact.guard(i)).collect();
         let mut guarded: Vec<Vec3> = asked.iter().map(|&i| moves[i]).collect();
-        s.body.guard(&points, &mut guarded, &gaps);
+        contact.body.guard(&points, &mut guarded, &gaps);
         for (&i, m) in asked.iter().zip(guarded) {
             if (moves[i] - m).norm() > NUDGE {
-                let distance = seen.get(i).map_or(0.0, |n| n.distance);
-                match s.grows {
-                    true => s.grow(i, distance),
-                    // What a seam presses on the body gives way to the seam, or the seam stays
-                    // open.
-                    false if sews => {}
-                    false => s.press(i, distance),
+                let distance = cache.get(i).map_or(0.0, |n| n.distance);
+                match contact.grows_offsets {
+                    true => contact.grow(i, distance),
+                    // Stiffer contact would keep the seam open.
+                    false if is_sewing => {}
+                    false => contact.mark_overloaded(i, distance),
                 }
             }
             moves[i] = m;
         }
     }
 
-    /// Finds what may touch sharp features at `x`.
+    /// Finds pairs of cloth and sharp features at `x`.
     pub fn seek_ridges(&mut self, x: &[Vec3]) {
         self.ridges.iter_mut().for_each(|r| r.seek(x, &vec![Vec3::zeros(); x.len()]));
     }
 
-    /// Ends moves that lead the cloth past a sharp feature of the body before that; it gives way
-    /// where it can.
+    /// Changes moves that lead the cloth past a sharp feature of the body: the cloth gives way
+    /// where it can, and otherwise the moves are shortened.
     pub fn clear_of_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
         let Some(r) = &mut self.ridges else { return };
         r.seek(x, moves);
-        let pushed = r.give_way(x, moves, &self.pinned);
-        if pushed.contains(&true) {
-            self.clear_of_body(x, moves, |i| pushed[i]);
+        let changed = r.respond(x, moves, &self.pinned);
+        if changed.contains(&true) {
+            self.clear_of_body(x, moves, |i| changed[i]);
             self.ridges.iter_mut().for_each(|r| {
                 r.seek(x, moves);
-                r.hold_apart(x, moves);
+                r.limit_step(x, moves);
             });
         }
     }
 
-    /// Shortens all moves alike where they still lead past one.
+    /// Shortens all moves alike where they still lead past a sharp feature.
     pub fn stop_at_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
         if let Some(r) = &mut self.ridges {
             r.seek(x, moves);
-            r.stop(x, moves);
+            r.scale_step(x, moves);
         }
     }
 
-    /// Looks for cloth that the body passes through at `x`, as what a coarser mesh left may: it is
-    /// pushed back out.
-    pub fn look_for_pierced(&mut self, x: &[Vec3]) {
-        if let (Some(r), Some(s)) = (&mut self.ridges, &self.support) {
-            r.look_for_pierced(s, x);
+    /// Finds cloth that the body passes through at `x`, as the state of a coarser mesh may, so that
+    /// it is changed back out.
+    pub fn find_pierced(&mut self, x: &[Vec3]) {
+        if let (Some(r), Some(contact)) = (&mut self.ridges, &self.body_contact) {
+            r.find_pierced(contact, x);
         }
     }
 
     /// Whether a sharp edge or corner of the body passes through the cloth at `x`.
     #[must_use]
     pub fn is_pierced(&self, x: &[Vec3]) -> bool {
-        matches!((&self.ridges, &self.support), (Some(r), Some(s)) if r.is_pierced(s, x))
+        matches!((&self.ridges, &self.body_contact), (Some(r), Some(contact)) if r.is_pierced(contact, x))
     }
 
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        self.visit(x).energy
+        self.evaluate(x).energy
     }
 
-    /// Energy at `x`, and what a step that starts there need not look up again.
+    /// Energy at `x`, with what a step that starts there can reuse.
     #[must_use]
-    pub fn visit(&self, x: &[Vec3]) -> Evaluation {
-        let pull = || self.threads.iter().map(|t| t.value(x)).sum::<f64>();
-        let (lasting, sight) = rayon::join(
-            || self.stored(x) + self.elastic.value_of_holds(x) + self.pushed(x) + pull(),
-            || self.looks(x),
+    pub fn evaluate(&self, x: &[Vec3]) -> Evaluation {
+        let seams = || self.seam_forces.iter().map(|t| t.value(x)).sum::<f64>();
+        let (contact_free, queries) = rayon::join(
+            || self.stored(x) + self.elastic.value_of_holds(x) + self.pushed(x) + seams(),
+            || self.query_body(x),
         );
-        let body: f64 = match &self.support {
-            Some(s) => {
-                let press = |((n, o), k): ((&ContactQuery, &f64), &f64)| {
+        let body: f64 = match &self.body_contact {
+            Some(contact) => {
+                let penalty = |((n, o), k): ((&ContactQuery, &f64), &f64)| {
                     n.1.as_ref().map_or(0.0, |n| 0.5 * k * (o - n.distance).max(0.0).powi(2))
                 };
-                sight.iter().zip(&s.offsets).zip(&s.stiffness).map(press).sum()
+                queries.iter().zip(&contact.offsets).zip(&contact.stiffness).map(penalty).sum()
             }
             None => 0.0,
         };
-        let rub: f64 = self.rubs().map(|(i, r)| r.value(&x[i])).sum();
-        let layers = self.layers.as_ref().map_or(0.0, |l| l.value(x));
+        let friction: f64 = self.body_friction().map(|(i, r)| r.value(&x[i])).sum();
+        let self_contact = self.self_contact.as_ref().map_or(0.0, |c| c.value(x));
         let ridges = self.ridges.as_ref().map_or(0.0, |r| r.value(x));
-        Evaluation { energy: lasting + body + rub + layers + ridges, lasting, sight }
+        Evaluation { energy: contact_free + body + friction + self_contact + ridges, contact_free, queries }
     }
 
-    /// Energy at the step's start, J, of which `lasting` does not depend on contacts.
+    /// Energy at the step's start, J, of which `contact_free` does not depend on contacts.
     #[must_use]
-    pub fn value_at_start(&self, x: &[Vec3], lasting: f64) -> f64 {
-        let body: f64 = match &self.support {
-            Some(s) => {
-                let press = |t: &BodyTouch| 0.5 * t.force * t.force / s.stiffness[t.node as usize];
-                self.touches.iter().filter(|t| t.force > 0.0).map(press).sum()
+    pub fn value_at_start(&self, x: &[Vec3], contact_free: f64) -> f64 {
+        let body: f64 = match &self.body_contact {
+            Some(contact) => {
+                let penalty = |t: &BodyTouch| 0.5 * t.force * t.force / contact.stiffness[t.node as usize];
+                self.touches.iter().filter(|t| t.force > 0.0).map(penalty).sum()
             }
             None => 0.0,
         };
-        let rub: f64 = self.rubs().map(|(i, r)| r.value(&x[i])).sum();
-        let layers = self.layers.as_ref().map_or(0.0, |l| l.value_at_start(x));
+        let friction: f64 = self.body_friction().map(|(i, r)| r.value(&x[i])).sum();
+        let self_contact = self.self_contact.as_ref().map_or(0.0, |c| c.value_at_start(x));
         let ridges = self.ridges.as_ref().map_or(0.0, |r| r.value_at_start(x));
-        lasting + body + rub + layers + ridges
+        contact_free + body + friction + self_contact + ridges
     }
 
     /// Elastic and gravitational energy at `x`, J.
@@ -274,60 +283,61 @@ impl System<'_> {
         held - self.push.iter().zip(x).map(|(p, x)| p.dot(x)).sum::<f64>()
     }
 
-    /// Whether crossings of the start are still being undone.
+    /// Whether some of the cloth still intersects itself.
     #[must_use]
-    pub fn is_tangled(&self) -> bool {
-        self.layers.as_ref().is_some_and(|l| !l.tangled.is_empty())
+    pub fn is_intersecting(&self) -> bool {
+        self.self_contact.as_ref().is_some_and(|c| !c.intersecting.is_empty())
     }
 
     /// Whether there is no friction with a body.
     #[must_use]
-    pub fn rubs_nowhere(&self) -> bool {
-        self.support.as_ref().is_none_or(|s| s.friction.iter().all(|f| *f == 0.0))
+    pub fn is_frictionless_on_body(&self) -> bool {
+        self.body_contact.as_ref().is_none_or(|contact| contact.friction.iter().all(|f| *f == 0.0))
     }
 
-    /// Takes friction away, and gives it back.
+    /// Exchanges the friction with the body for `friction`, and disables or enables that of cloth
+    /// on cloth.
     pub fn swap_friction(&mut self, friction: &mut Vec<f64>) {
-        if let Some(s) = &mut self.support {
-            std::mem::swap(&mut s.friction, friction);
+        if let Some(contact) = &mut self.body_contact {
+            std::mem::swap(&mut contact.friction, friction);
         }
-        self.layers.iter_mut().for_each(SelfContact::swap_friction);
+        self.self_contact.iter_mut().for_each(SelfContact::swap_friction);
         self.ridges.iter_mut().for_each(Ridges::swap_friction);
         self.anchors.fill(None);
         self.loads.fill(0.0);
     }
 
-    /// Finds the touches at `x`: call it at the start of each step.
-    pub fn touch(&mut self, x: &[Vec3]) {
-        self.touch_in_sight(x, None);
+    /// Finds the contacts at `x`. Call it at the start of each step.
+    pub fn update_contacts(&mut self, x: &[Vec3]) {
+        self.update_contacts_with(x, None);
     }
 
-    /// The same, where what was seen at `x` is known.
-    pub fn touch_in_sight(&mut self, x: &[Vec3], sight: Option<Vec<ContactQuery>>) {
-        self.layers.iter_mut().for_each(|l| l.touch(x));
+    /// The same, with the contact queries at `x` where they are known.
+    pub fn update_contacts_with(&mut self, x: &[Vec3], queries: Option<Vec<ContactQuery>>) {
+        self.self_contact.iter_mut().for_each(|c| c.update_contacts(x));
         #[cfg(toile_without = "body")]
         return;
-        let near = self.look(x, sight);
-        let Some(s) = &mut self.support else { return };
-        s.stiffen();
+        let near = self.nearest_on_body(x, queries);
+        let Some(contact) = &mut self.body_contact else { return };
+        contact.stiffen_overloaded();
         let ridges = &mut self.ridges;
-        ridges.iter_mut().for_each(|r| r.touch(s, x));
-        if !s.passes {
-            s.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
+        ridges.iter_mut().for_each(|r| r.update_contacts(contact, x));
+        if !contact.lets_through {
+            contact.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
         }
         let mut anchors = vec![None; x.len()];
         let mut loads = vec![0.0; x.len()];
         self.touches.clear();
         for (i, n) in near.iter().enumerate() {
             let Some(n) = n else { continue };
-            if s.hard && n.distance < 0.0 {
-                s.pressed.push(i as u32);
+            if contact.stiffens_inside && n.distance < 0.0 {
+                contact.overloaded.push(i as u32);
             }
-            let force = s.stiffness[i] * (s.offsets[i] - n.distance).max(0.0);
-            // While Newton's steps swing between touching and not, friction follows the mean.
-            // A node that has just come down will carry its weight at least.
+            let force = contact.stiffness[i] * (contact.offsets[i] - n.distance).max(0.0);
+            // Contact may alternate from step to step, so the limit of friction is a mean. A node
+            // that has just come into contact will carry at least its weight.
             let weight = -self.masses[i] * self.gravity.dot(&n.normal);
-            let first = if n.distance < 1.1 * s.offsets[i] { force.max(weight) } else { force };
+            let first = if n.distance < 1.1 * contact.offsets[i] { force.max(weight) } else { force };
             loads[i] = if self.anchors[i].is_some() { 0.5 * (self.loads[i] + force) } else { first };
             if force > 0.0 || loads[i] > 0.0 {
                 anchors[i] = Some(self.anchors[i].unwrap_or(x[i] - std::mem::take(&mut self.slides[i])));
@@ -337,31 +347,31 @@ impl System<'_> {
         (self.anchors, self.loads) = (anchors, loads);
     }
 
-    /// Drags anchors along behind nodes that slide: call it at the end of each step that moves far.
-    pub fn drag(&mut self, x: &[Vec3]) {
-        let dragged: Vec<(usize, Vec3)> = self.rubs().map(|(i, r)| (i, r.dragged(&x[i]))).collect();
+    /// Moves anchors along with nodes that slide. Call it at the end of each step that moves far.
+    pub fn drag_anchors(&mut self, x: &[Vec3]) {
+        let dragged: Vec<(usize, Vec3)> = self.body_friction().map(|(i, r)| (i, r.dragged(&x[i]))).collect();
         dragged.into_iter().for_each(|(i, anchor)| self.anchors[i] = Some(anchor));
-        self.layers.iter_mut().for_each(|l| l.drag(x));
-        self.ridges.iter_mut().for_each(|r| r.drag(x));
+        self.self_contact.iter_mut().for_each(|c| c.drag_anchors(x));
+        self.ridges.iter_mut().for_each(|r| r.drag_anchors(x));
         self.elastic.drag(x);
     }
 
-    /// How far each node has slid from its anchor at `x`, m; the same on a finer mesh.
+    /// The tangential displacement of each node from its anchor at `x`, m.
     #[must_use]
-    pub fn held_back(&self, x: &[Vec3]) -> Vec<Vec3> {
+    pub fn displacements(&self, x: &[Vec3]) -> Vec<Vec3> {
         let mut slides = vec![Vec3::zeros(); x.len()];
-        self.rubs().for_each(|(i, r)| slides[i] = r.way(&x[i]));
+        self.body_friction().for_each(|(i, r)| slides[i] = r.displacement(&x[i]));
         slides
     }
 
-    /// Nodes that rub on the body.
-    fn rubs(&self) -> impl Iterator<Item = (usize, Coulomb)> + '_ {
-        let s = self.support.as_ref();
+    /// The nodes with friction on the body, and that friction.
+    fn body_friction(&self) -> impl Iterator<Item = (usize, Coulomb)> + '_ {
+        let contact = self.body_contact.as_ref();
         self.touches.iter().filter_map(move |t| {
             let node = t.node as usize;
-            let s = s.filter(|s| s.friction[node] > 0.0)?;
+            let contact = contact.filter(|contact| contact.friction[node] > 0.0)?;
             let anchor = self.anchors[node]?;
-            Some((node, Coulomb { normal: t.normal, anchor, limit: s.friction[node] * t.load }))
+            Some((node, Coulomb { normal: t.normal, anchor, limit: contact.friction[node] * t.load }))
         })
     }
 
@@ -372,10 +382,10 @@ impl System<'_> {
         g.iter_mut().zip(&self.push).for_each(|(g, p)| *g -= p);
         self.height_springs.iter().for_each(|h| h.add_gradient(x, &self.masses, &mut g));
         self.elastic.add_gradient(x, &mut g);
-        self.threads.iter().for_each(|t| t.add_gradient(x, &mut g));
+        self.seam_forces.iter().for_each(|t| t.add_gradient(x, &mut g));
         self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
-        self.rubs().for_each(|(i, r)| g[i] += r.gradient(&x[i]));
-        self.layers.iter().for_each(|l| l.add_gradient(x, &mut g));
+        self.body_friction().for_each(|(i, r)| g[i] += r.gradient(&x[i]));
+        self.self_contact.iter().for_each(|c| c.add_gradient(x, &mut g));
         self.ridges.iter().for_each(|r| r.add_gradient(x, &mut g));
         g.iter_mut().zip(&self.pinned).filter(|(_, p)| **p).for_each(|(g, _)| *g = Vec3::zeros());
         g
@@ -398,14 +408,15 @@ impl System<'_> {
         }
         values.iter_mut().zip(&self.brakes).for_each(|(v, b)| *v += Matrix3::identity() * *b);
         self.height_springs.iter().for_each(|h| h.add_matrix(&self.masses, values));
-        self.threads.iter().for_each(|t| t.add_matrix(x, pattern, values));
-        if let Some(s) = &self.support {
+        self.seam_forces.iter().for_each(|t| t.add_matrix(x, pattern, values));
+        if let Some(contact) = &self.body_contact {
             for t in self.touches.iter().filter(|t| t.force > 0.0) {
-                values[t.node as usize] += t.normal * t.normal.transpose() * s.stiffness[t.node as usize];
+                values[t.node as usize] +=
+                    t.normal * t.normal.transpose() * contact.stiffness[t.node as usize];
             }
         }
-        self.rubs().for_each(|(i, r)| values[i] += r.matrix(&x[i]));
-        self.layers.iter().for_each(|l| l.add_matrix(x, pattern, values));
+        self.body_friction().for_each(|(i, r)| values[i] += r.matrix(&x[i]));
+        self.self_contact.iter().for_each(|c| c.add_matrix(x, pattern, values));
         self.ridges.iter().for_each(|r| r.add_matrix(x, pattern, values));
         let held = self.pinned.iter().zip(values).filter(|(p, _)| **p);
         held.for_each(|(_, v)| *v = Matrix3::identity());

@@ -1,6 +1,6 @@
-//! What acts on the nodes of one level: a scene turned into a [`System`].
+//! Assembles the [`System`] of one level from a scene. Cost: O(n).
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::energy::{Cloth, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
@@ -17,28 +17,28 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre
-/// of thickness: a cloth strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of
-/// its thickness. Softer converges sooner.
+/// Pressure of contact at distance 0, as a share of stretch stiffness per metre of thickness. Cloth
+/// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer
+/// contact converges sooner.
 const CONTACT_STIFFNESS: f64 = 0.5;
 
-/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours
-/// would push each other.
+/// Greatest thickness of self-contact, as a share of the shortest edge: neighbours must not repel
+/// each other.
 const LAYER_SHARE: f64 = 0.25;
 
-/// Who wears the garment.
+/// A collider: the solid that wears the garment, with its friction.
 #[derive(Debug, Clone, Copy)]
 pub struct Collider<'a> {
     /// The solid.
-    pub skin: &'a dyn CollisionSurface,
-    /// Coulomb's coefficient of cloth on it.
+    pub surface: &'a dyn CollisionSurface,
+    /// Coefficient of friction of cloth on it.
     pub friction: f64,
     #[cfg(toile_without = "body")]
     pub(crate) never: std::convert::Infallible,
 }
 
-/// The system of one level's nodes: of every vertex where seams are `open`, otherwise of every sewn
-/// point.
+/// The system of the nodes of one level: of all vertices where seams are `open`, otherwise of all
+/// sewn nodes.
 pub(crate) fn assemble<'a>(
     scene: &Scene,
     body: Option<Collider<'a>>,
@@ -48,65 +48,14 @@ pub(crate) fn assemble<'a>(
     models: Models,
 ) -> Result<System<'a>, ClothError> {
     let cloths = cloths(scene);
-    let n = sheet.vertex_count();
-    let mut pinned = vec![false; n];
-    let mut panel = vec![0; n];
-    for (v, &p) in pieces.pinned.iter().enumerate() {
-        let node = if open { v } else { pieces.node[v] as usize };
-        pinned[node] |= p;
-        panel[node] = pieces.panel[v] as usize;
-    }
-    let stiffness: Vec<f64> = sheet
-        .masses()
-        .iter()
-        .zip(&panel)
-        .map(|(w, &p)| (w, cloths[p]))
-        .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
-        .collect();
-    let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
-    let thickness = |p: &usize| cloths[*p].thickness;
-    let rub = |b: Collider<'_>, p: usize| {
-        let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
-        // Hands that sew a garment on a body let it slip into place.
-        if open { 0.0 } else { own.unwrap_or(b.friction) }
-    };
-    let support = body.map(|b| BodyContact {
-        body: b.skin,
-        friction: panel.iter().map(|&p| rub(b, p)).collect(),
-        offsets: panel.iter().map(thickness).collect(),
-        offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
-        depth: longest.clamp(0.02, 0.1),
-        edges: sheet.distinct_edges().collect(),
-        clear: pieces.rest.len() == scene.rest.len(),
-        grows: false,
-        hard: false,
-        passes: false,
-        #[cfg(toile_without = "body")]
-        never: b.never,
-        stiffness: stiffness.clone(),
-        pressed: Vec::new(),
+    let nodes = Nodes::new(pieces, sheet, open);
+    let stiffness = contact_stiffness(sheet, &nodes, &cloths);
+    let body_contact = body.map(|b| BodyContact {
+        keeps_edges_out: pieces.rest.len() == scene.rest.len(),
+        ..body_contact(b, scene, sheet, &nodes, &cloths, open, stiffness.clone())
     });
-    let mut corners = vec![0u16; n];
-    sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
-    let thickness = layer_thickness(&cloths, panel.iter().copied(), sheet);
-    let edge = sheet.edges().iter().map(|e| e.rest_length).sum::<f64>() / sheet.edges().len().max(1) as f64;
-    let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
-    let no_friction = cloths.iter().all(|c| c.friction == 0.0);
-    let ordered = scene.panels.iter().any(|p| p.layer > 0);
-    let layers = scene.self_collision.then(|| SelfContact {
-        thickness,
-        edge,
-        stiffness,
-        // Hands that sew let cloth slip over cloth, too.
-        friction: if open || no_friction {
-            vec![]
-        } else {
-            panel.iter().map(|&p| cloths[p].friction).collect()
-        },
-        corners,
-        order: if ordered { panel.iter().map(order).collect() } else { vec![] },
-        ..SelfContact::default()
-    });
+    let self_contact =
+        scene.self_collision.then(|| self_contact(scene, sheet, &nodes, &cloths, open, stiffness));
     let uncut = pieces.uncut().transpose()?;
     let one = [&scene.material];
     let cloth = Cloth {
@@ -118,52 +67,151 @@ pub(crate) fn assemble<'a>(
     };
     let creases = if open { Vec::new() } else { pieces.creases(sheet) };
     let elastic = Elastic::new(models, &cloth, pieces.springs(open), &creases)?;
+    let n = sheet.vertex_count();
     Ok(System {
         elastic,
         masses: sheet.masses().to_vec(),
         gravity: if open { Vec3::zeros() } else { gravity(scene) },
         push: vec![],
         height_springs: None,
-        pinned,
-        threads: vec![],
-        ridges: support.as_ref().and_then(|s| Ridges::new(s, sheet)),
-        support,
-        layers,
+        pinned: nodes.pinned,
+        seam_forces: vec![],
+        ridges: body_contact.as_ref().and_then(|c| Ridges::new(c, sheet)),
+        body_contact,
+        self_contact,
         touches: vec![],
         anchors: vec![None; n],
         slides: vec![Vec3::zeros(); n],
         loads: vec![0.0; n],
-        seen: vec![],
+        distance_cache: vec![],
         brakes: vec![],
-        pulls: vec![],
+        targets: vec![],
     })
 }
 
-/// Distance at which cloth is held off cloth on a level whose nodes are of these panels, counted
-/// from 1, m.
+/// The panel of each node, counted from 1 (0 for none), and whether it is pinned.
+struct Nodes {
+    panel: Vec<usize>,
+    pinned: Vec<bool>,
+}
+
+impl Nodes {
+    fn new(pieces: &Pieces, sheet: &Sheet, open: bool) -> Self {
+        let mut pinned = vec![false; sheet.vertex_count()];
+        let mut panel = vec![0; sheet.vertex_count()];
+        for (v, &p) in pieces.pinned.iter().enumerate() {
+            let node = if open { v } else { pieces.node[v] as usize };
+            pinned[node] |= p;
+            panel[node] = pieces.panel[v] as usize;
+        }
+        Self { panel, pinned }
+    }
+}
+
+/// Stiffness of contact at each node, N/m.
+fn contact_stiffness(sheet: &Sheet, nodes: &Nodes, cloths: &[&Fabric]) -> Vec<f64> {
+    sheet
+        .masses()
+        .iter()
+        .zip(&nodes.panel)
+        .map(|(w, &p)| (w, cloths[p]))
+        .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
+        .collect()
+}
+
+/// Contact with the body, without friction while seams are `open`.
+fn body_contact<'a>(
+    body: Collider<'a>,
+    scene: &Scene,
+    sheet: &Sheet,
+    nodes: &Nodes,
+    cloths: &[&Fabric],
+    open: bool,
+    stiffness: Vec<f64>,
+) -> BodyContact<'a> {
+    let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
+    let thickness = |p: &usize| cloths[*p].thickness;
+    let friction = |p: usize| {
+        let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
+        if open { 0.0 } else { own.unwrap_or(body.friction) }
+    };
+    BodyContact {
+        body: body.surface,
+        friction: nodes.panel.iter().map(|&p| friction(p)).collect(),
+        offsets: nodes.panel.iter().map(thickness).collect(),
+        offset: nodes.panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
+        depth: longest.clamp(0.02, 0.1),
+        edges: sheet.distinct_edges().collect(),
+        keeps_edges_out: false,
+        grows_offsets: false,
+        stiffens_inside: false,
+        lets_through: false,
+        #[cfg(toile_without = "body")]
+        never: body.never,
+        stiffness,
+        overloaded: Vec::new(),
+    }
+}
+
+/// Contact of the cloth with itself, without friction while seams are `open`.
+fn self_contact(
+    scene: &Scene,
+    sheet: &Sheet,
+    nodes: &Nodes,
+    cloths: &[&Fabric],
+    open: bool,
+    stiffness: Vec<f64>,
+) -> SelfContact {
+    let mut corners = vec![0u16; sheet.vertex_count()];
+    sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
+    let thickness = layer_thickness(cloths, nodes.panel.iter().copied(), sheet);
+    let edge = sheet.edges().iter().map(|e| e.rest_length).sum::<f64>() / sheet.edges().len().max(1) as f64;
+    let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
+    let no_friction = cloths.iter().all(|c| c.friction == 0.0);
+    let ordered = scene.panels.iter().any(|p| p.layer > 0);
+    SelfContact {
+        thickness,
+        edge,
+        stiffness,
+        friction: if open || no_friction {
+            vec![]
+        } else {
+            nodes.panel.iter().map(|&p| cloths[p].friction).collect()
+        },
+        corners,
+        order: if ordered { nodes.panel.iter().map(order).collect() } else { vec![] },
+        ..SelfContact::default()
+    }
+}
+
+/// Thickness of self-contact on a level whose nodes belong to these panels, counted from 1, m.
 pub(crate) fn layer_thickness(cloths: &[&Fabric], panels: impl Iterator<Item = usize>, sheet: &Sheet) -> f64 {
     let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
     panels.map(|p| cloths[p].thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest)
 }
 
-/// What no panel and what each panel is made of.
+/// The fabric of vertices without a panel, then that of each panel.
 pub(crate) fn cloths(scene: &Scene) -> Vec<&Fabric> {
     std::iter::once(&scene.material).chain((0..scene.panels.len()).map(|k| scene.fabric_of(k))).collect()
 }
 
-/// The gravity in the end.
+/// Gravity in the last phase.
 pub(crate) fn gravity(scene: &Scene) -> Vec3 {
     scene.phases.last().map(|p| p.gravity).unwrap_or_default()
 }
 
-/// Force a metre of seams that stay two rows of vertices held by thread, as a share of stretch
-/// stiffness: strong enough to carry the garment without a gap.
-pub(crate) const KEPT_PULL: f64 = 0.1;
+/// Force per metre of seams that are not joined, as a share of stretch stiffness: strong enough to
+/// carry the garment without a gap.
+pub(crate) const KEPT_FORCE: f64 = 0.1;
 
-/// Threads of the seams that are not joined.
-pub(crate) fn kept_threads(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<SeamForce> {
-    let force = KEPT_PULL * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
-    pieces.kept_pairs().into_iter().map(|nodes| SeamForce { nodes, force, soft: 2.0 * join_gap }).collect()
+/// The closing forces of the seams that are not joined.
+pub(crate) fn kept_seam_forces(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<SeamForce> {
+    let force = KEPT_FORCE * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
+    pieces
+        .kept_pairs()
+        .into_iter()
+        .map(|nodes| SeamForce { nodes, force, softening: 2.0 * join_gap })
+        .collect()
 }
 
 /// Stretch stiffness of the stiffest panel, N/m.
@@ -171,7 +219,7 @@ pub(crate) fn strongest(cloths: &[&Fabric]) -> f64 {
     cloths.iter().map(|c| c.stretch()).fold(0.0, f64::max)
 }
 
-/// Mean length of seam that a pair stands for, m.
+/// Mean length of seam per pair, m.
 pub(crate) fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
     let mut sewn = vec![false; pieces.rest.len()];
     pairs.iter().flatten().for_each(|&v| sewn[v as usize] = true);

@@ -1,27 +1,26 @@
-//! Cloth in a plane that its seams draw together in that plane.
+//! Buckling of flat cloth whose seams close within its plane.
 //!
-//! A curtain that is gathered to a row of pins has to fold, but a flat sheet on which every force
-//! lies in its plane never leaves it: it is pressed together instead, and the seams stay open. What
-//! is flat at the start and after it was drawn together begins again a hair out of its plane, as no
-//! real cloth is flat; how it folds then is chance, as it is for real cloth. Cost: O(n).
+//! A curtain that is gathered to a row of pins has to fold. But a flat sheet never leaves its plane
+//! if all forces lie in the plane: it is compressed, and the seams stay open. So panels that are
+//! flat at the start and after the seams have been closed start again with a small imperfection out
+//! of their plane. Cost: O(n). Limit: which folds form is chance, as it is for real cloth.
 
 use crate::statics::levels::pieces::Pieces;
 use nalgebra::{SymmetricEigen, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// Cloth that is thinner than this share of its size lies in a plane.
+/// Thickness, as a share of its size, below which cloth counts as flat.
 const FLAT: f64 = 1e-6;
 
-/// How far points begin out of the plane at most, as a share of an edge.
+/// Size of the imperfection, as a share of an edge.
 const OUT: f64 = 0.01;
 
-/// The share of the golden section, whose multiples are spread evenly and alike for no two
-/// neighbours.
+/// The golden ratio minus 1: the fractional parts of its multiples are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// A start for cloth that sewing has brought from `start` to `end`: panels that are flat in both a
-/// hair out of their plane, with `edge` for the length of their edges, m. Nothing where none is.
+/// The positions `start` with a small imperfection of the panels that are flat both in `start` and
+/// after sewing in `end`; `edge` is the length of their edges, m. `None` where no panel is.
 pub(crate) fn out_of_plane(pieces: &Pieces, start: &[Vec3], end: &[Vec3], edge: f64) -> Option<Vec<Vec3>> {
     let mut has_cloth = vec![false; start.len()];
     pieces.triangles.iter().flatten().for_each(|&v| has_cloth[v as usize] = true);
@@ -40,7 +39,7 @@ pub(crate) fn out_of_plane(pieces: &Pieces, start: &[Vec3], end: &[Vec3], edge: 
     is_any.then_some(moved)
 }
 
-/// The normal of the plane in which vertices lie; nothing where they do not.
+/// The normal of the plane in which vertices lie; `None` where they are not flat.
 fn normal(vertices: &[usize], x: &[Vec3]) -> Option<Vec3> {
     let middle = vertices.iter().map(|&v| x[v]).sum::<Vec3>() / vertices.len() as f64;
     let spread = vertices

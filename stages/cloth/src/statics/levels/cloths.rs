@@ -1,19 +1,18 @@
-//! The pieces of cloth that hang together, which fall each for itself.
+//! The connected pieces of cloth, each of which may fall by itself. Cost: O(n).
 
 use crate::contact::past::NO_PIECE;
 use crate::scene::Scene;
 use crate::statics::forces::system::System;
 use toile_geometry::components::groups;
 
-/// The piece of cloth that each node of a system belongs to.
+/// The piece of each node of a system.
 pub(crate) fn pieces_of(system: &System<'_>) -> Vec<u32> {
     let (mut piece, _) = groups(system.masses.len(), system.links().into_iter());
     piece.iter_mut().zip(&system.masses).filter(|(_, m)| **m == 0.0).for_each(|(p, _)| *p = NO_PIECE);
     piece
 }
 
-/// The piece of cloth that each vertex of a scene belongs to: what hangs together by triangles and
-/// seams.
+/// The piece of each vertex of a scene, connected by triangles and seams.
 pub(crate) fn pieces_of_scene(scene: &Scene) -> Vec<u32> {
     let n = scene.rest.len();
     let sides = scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]);

@@ -1,32 +1,33 @@
-//! A coarser mesh of the same pieces, on a subset of their vertices.
+//! Coarsening: a coarser mesh of the same pieces, on a subset of their vertices.
 //!
 //! Method: a maximal independent set of the sewn points is kept, corners and pins first, then
-//! outlines, then the inside; every other vertex is collapsed into a neighbour where no triangle
-//! turns over or becomes a sliver (Hoppe 1996, in the plane). The two sides of a seam collapse
-//! together, so they keep matching. Each fine vertex then knows the coarse triangle that it lies
-//! in. A third to a quarter of the vertices remain. Cost O(n) on ordinary meshes.
+//! outlines, then the inside. Every other vertex is collapsed into a neighbour where no triangle is
+//! inverted or becomes a sliver (edge collapse: Hoppe 1996, in the plane). The two sides of a seam
+//! are collapsed together, so that they still match. Prolongation interpolates in the coarse
+//! triangle in which a fine vertex lies. Cost: O(n) on ordinary meshes. Limit: a third to a quarter
+//! of the vertices remain.
 
 use self::keep::independent;
 use self::locate::Locator;
 use crate::statics::levels::pieces::Pieces;
 use nalgebra::{Vector2, Vector3};
 
-/// Least shape quality (1 equilateral) of a triangle that a collapse may make.
+/// Least shape quality (1 for equilateral) of a triangle after a collapse.
 const LEAST_QUALITY: f64 = 0.3;
 
-/// A coarser level.
+/// A coarser level and its prolongation.
 #[derive(Debug, Clone)]
 pub struct Coarser {
     /// Its pieces.
     pub pieces: Pieces,
     /// The fine vertex that each coarse vertex is.
     pub kept: Vec<u32>,
-    /// For each fine vertex three coarse ones and their weights, which sum to 1.
+    /// For each fine vertex three coarse vertices and their weights, whose sum is 1.
     pub weights: Vec<([u32; 3], [f64; 3])>,
 }
 
 impl Coarser {
-    /// Values at fine vertices from those at coarse vertices.
+    /// Prolongation: values at fine vertices from those at coarse vertices.
     #[must_use]
     pub fn prolong(&self, coarse: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         let at = |(v, w): &([u32; 3], [f64; 3])| (0..3).map(|k| coarse[v[k] as usize] * w[k]).sum();
@@ -40,7 +41,7 @@ pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
     let mut mesh = Mesh::new(fine);
     let bare: Vec<bool> = mesh.at.iter().map(Vec::is_empty).collect();
     let keep = independent(fine, &mesh);
-    // Good triangles first; what is left gets a second chance after its neighbours have gone.
+    // Vertices that could not be collapsed are tried again after their neighbours have gone.
     for _ in 0..2 {
         for p in 0..fine.points {
             if !keep[p] {
@@ -50,7 +51,7 @@ pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
     }
     let alive = mesh.alive_triangles();
     let mut number = vec![u32::MAX; fine.rest.len()];
-    // A pin of no triangle holds what is sewn to it on every level.
+    // A pinned vertex without a triangle holds the cloth that is sewn to it on every level.
     let anchors: Vec<u32> =
         (0..bare.len() as u32).filter(|&v| bare[v as usize] && fine.pinned[v as usize]).collect();
     let mut kept: Vec<u32> = alive.iter().flatten().chain(&anchors).copied().collect();
@@ -87,7 +88,7 @@ fn restrict(fine: &Pieces, kept: &[u32], triangles: Vec<[u32; 3]>) -> Pieces {
     }
 }
 
-/// The groups of the kept vertices, numbered by their first members.
+/// The groups of the kept vertices, numbered in the order of their first members.
 fn renumber(kept: &[u32], group: &[u32], groups: usize) -> (Vec<u32>, usize) {
     let mut number = vec![u32::MAX; groups];
     let mut count = 0;
@@ -110,8 +111,7 @@ struct Mesh {
     at: Vec<Vec<u32>>,
     /// Vertices of each sewn point.
     members: Vec<Vec<u32>>,
-    /// The two neighbours along the outline; both the vertex itself inside, and where outlines
-    /// meet.
+    /// The two neighbours along the outline; `None` inside and where outlines meet.
     outline: Vec<Option<[u32; 2]>>,
     on_outline: Vec<bool>,
 }
@@ -151,8 +151,8 @@ impl Mesh {
         all
     }
 
-    /// Collapses every vertex of the sewn point `p` into one neighbouring point, if there is a good
-    /// one.
+    /// Collapses every vertex of the sewn point `p` into the best neighbouring point, if one is
+    /// good enough.
     fn collapse(&mut self, p: u32, fine: &Pieces, keep: &[bool]) {
         let members = self.members[p as usize].clone();
         let Some(&first) = members.first() else { return };
@@ -180,7 +180,7 @@ impl Mesh {
         }
     }
 
-    /// For each member the vertex of `target` it would move to, if every one of them may.
+    /// For each member the vertex of `target` into which it would collapse, if all of them may.
     fn moves(&self, members: &[u32], target: u32, fine: &Pieces) -> Option<Vec<[u32; 2]>> {
         members
             .iter()
@@ -191,7 +191,8 @@ impl Mesh {
             .collect()
     }
 
-    /// Whether the edge may vanish: outlines keep to themselves, and nothing else is pinched.
+    /// Whether the edge may be collapsed: outlines must stay outlines, and the link condition must
+    /// hold.
     fn may_merge(&self, v: u32, w: u32) -> bool {
         let shared = self.at[v as usize].iter().filter(|&&t| self.triangles[t as usize].contains(&w)).count();
         if self.on_outline[v as usize] && !self.outline[v as usize].is_some_and(|ends| ends.contains(&w)) {

@@ -1,4 +1,4 @@
-//! One level of a sewn garment on its way to rest.
+//! One mesh level of a sewn garment, with its state.
 
 use crate::mesh::Sheet;
 use crate::statics::forces::system::System;
@@ -6,29 +6,31 @@ use nalgebra::{Rotation3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// One level at work.
+/// A mesh level and the state of its nodes.
 #[derive(Clone)]
 pub(crate) struct Level<'s> {
     pub(crate) system: System<'s>,
     pub(crate) sheet: Sheet,
-    /// Where the nodes start; orders the elimination.
+    /// The initial positions of the nodes, m; they order the elimination.
     pub(crate) layout: Vec<Vec3>,
+    /// The positions of the nodes, m.
     pub(crate) x: Vec<Vec3>,
-    /// The friction taken away, if it was.
+    /// The coefficients of friction with the body while friction is disabled.
     pub(crate) friction: Option<Vec<f64>>,
 }
 
 impl Level<'_> {
-    /// Puts its nodes where the level before left the cloth, held back by friction as there;
-    /// `handed` where that was a coarser one.
-    pub(crate) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>, handed: bool) {
+    /// Sets the positions of its nodes and their tangential displacements. `is_prolonged` tells
+    /// that they come from a coarser level.
+    pub(crate) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>, is_prolonged: bool) {
         if slides.len() == x.len() {
             self.system.slides = slides;
         }
-        self.system.elastic.hold(&x, handed);
+        self.system.elastic.hold(&x, is_prolonged);
         self.x = x;
     }
 
+    /// Disables friction.
     pub(crate) fn disable_friction(&mut self) {
         if self.friction.is_none() {
             let mut none = vec![0.0; self.x.len()];
@@ -37,7 +39,7 @@ impl Level<'_> {
         }
     }
 
-    /// Gives friction back; whether it was away.
+    /// Enables friction; returns whether it was disabled.
     pub(crate) fn enable_friction(&mut self) -> bool {
         let friction = self.friction.take();
         friction.map(|mut f| self.system.swap_friction(&mut f)).is_some()
@@ -49,7 +51,7 @@ impl Level<'_> {
         lengths.sum::<f64>() / self.sheet.edges().len().max(1) as f64
     }
 
-    /// The root of its area, m.
+    /// Its size, the root of its area, m.
     pub(crate) fn size(&self) -> f64 {
         self.sheet.size()
     }
@@ -64,21 +66,21 @@ impl Level<'_> {
         sum / self.system.masses.iter().sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// How far its middle lies from where it was placed, m.
+    /// Distance of its centre of mass from the initial one, m.
     pub(crate) fn moved(&self) -> f64 {
         (self.middle() - self.middle_of(&self.layout)).norm()
     }
 
-    /// How far it has turned about its own axis along gravity since it was placed, rad.
+    /// Angle by which it has turned about its axis along gravity since the start, rad.
     pub(crate) fn turned(&self) -> f64 {
         let arms = |x| arms(&self.axis(), &self.middle_of(x), x);
         turn(&self.axis(), &self.system.masses, &arms(&self.layout), &arms(&self.x))
     }
 
-    /// Turns it about its axis towards how it was placed, no farther than the body pushes out what
-    /// it meets. What is pinned stays.
+    /// Turns it about its axis towards its initial orientation, no farther than body contact can
+    /// push cloth out. A level with pins stays.
     pub(crate) fn turn_back(&mut self) {
-        let Some(depth) = self.system.support.as_ref().map(|s| s.depth) else { return };
+        let Some(depth) = self.system.body_contact.as_ref().map(|s| s.depth) else { return };
         if self.system.pinned.contains(&true) {
             return;
         }
@@ -89,8 +91,7 @@ impl Level<'_> {
         self.x.iter_mut().for_each(|p| *p = middle + back * (*p - middle));
     }
 
-    /// Forces on its nodes that turn it about its axis and are such a share of its weight in all,
-    /// N.
+    /// Forces on its nodes that turn it about its axis, whose sum is a share of its weight, N.
     pub(crate) fn twist(&self, share: f64) -> Vec<Vec3> {
         let arms = arms(&self.axis(), &self.middle(), &self.x);
         let torque: f64 = arms.iter().zip(&self.system.masses).map(|(a, m)| m * a.norm()).sum();
@@ -99,18 +100,18 @@ impl Level<'_> {
         arms.iter().zip(&self.system.masses).map(|(a, m)| a * (pull * m)).collect()
     }
 
-    /// Against gravity; zero without it.
+    /// The direction against gravity; zero without gravity.
     fn axis(&self) -> Vec3 {
         self.system.gravity.try_normalize(0.0).map_or_else(Vec3::zeros, |g| -g)
     }
 }
 
-/// Where nodes would go that turn by 1 rad about an axis through `middle`, m.
+/// The moves of nodes that turn about an axis through `middle`, m/rad.
 fn arms(axis: &Vec3, middle: &Vec3, x: &[Vec3]) -> Vec<Vec3> {
     x.iter().map(|p| axis.cross(&(p - middle))).collect()
 }
 
-/// The turn about an axis that brings one set of arms nearest to another (least squares by mass),
+/// The angle about an axis that brings one set of arms nearest to another (least squares by mass),
 /// rad.
 fn turn(axis: &Vec3, masses: &[f64], from: &[Vec3], to: &[Vec3]) -> f64 {
     let each = || masses.iter().zip(from).zip(to);

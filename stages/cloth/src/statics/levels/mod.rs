@@ -1,4 +1,4 @@
-//! The meshes of a garment, from the coarsest to the finest, and what acts on each.
+//! The multilevel mesh of a garment, and the forces on each mesh level.
 //!
 //! Depends on `forces`.
 
@@ -10,4 +10,4 @@ pub mod coarsen;
 pub(crate) mod mesh_level;
 pub mod pieces;
 #[cfg(test)]
-pub(crate) mod trial;
+pub(crate) mod testing;

@@ -1,4 +1,6 @@
-//! The cut pieces of a garment, flat: what one level of the solver works on.
+//! The flat cut pieces of a garment on one mesh level, and how they are sewn.
+//!
+//! Cost: O(n log n) to make.
 
 use crate::energy::Band as Piece;
 use crate::error::ClothError;
@@ -11,35 +13,35 @@ use crate::statics::forces::system::System;
 use nalgebra::{Vector2, Vector3};
 use toile_geometry::components::{groups, links};
 
-/// Flat pieces and which of their vertices are sewn into one.
+/// The flat pieces, and which of their vertices are sewn together.
 #[derive(Debug, Clone)]
 pub struct Pieces {
     /// Rest coordinates of each vertex, m.
     pub rest: Vec<Vector2<f64>>,
     /// Vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// The sewn point that each vertex ends up at, 0 to `points`: both sides of a seam are
-    /// coarsened together.
+    /// The sewn point of each vertex, 0 to `points`. Both sides of a seam have the same point, so
+    /// that they are coarsened together.
     pub point: Vec<u32>,
-    /// How many sewn points there are.
+    /// The number of sewn points.
     pub points: usize,
-    /// The node that each vertex becomes, 0 to `nodes`: that of its sewn point, unless a seam there
-    /// is not joined.
+    /// The node of each vertex, 0 to `nodes`: that of its sewn point, unless a seam there is not
+    /// joined.
     pub node: Vec<u32>,
-    /// How many nodes there are after sewing.
+    /// The number of nodes after sewing.
     pub nodes: usize,
-    /// The panel that each vertex belongs to, counted from 1; 0 for a vertex of none.
+    /// The panel of each vertex, counted from 1; 0 for none.
     pub panel: Vec<u32>,
     /// Whether a vertex lies on a seam that gathers.
     pub gathered: Vec<bool>,
-    /// The angle at rest between the two sheets of a seam that is pressed to stay folded, on its
+    /// The rest angle between the two sheets of a seam that is pressed to stay folded, for its
     /// vertices, radians.
     pub fold: Vec<Option<f64>>,
     /// Elastic bands.
     pub bands: Vec<Path>,
-    /// The connected piece that each vertex belongs to.
+    /// The connected piece of each vertex.
     pub piece: Vec<u32>,
-    /// Whether a vertex must stay where it is.
+    /// Whether a vertex is pinned.
     pub pinned: Vec<bool>,
 }
 
@@ -48,9 +50,9 @@ pub struct Pieces {
 pub struct Path {
     /// Its vertices.
     pub vertices: Vec<u32>,
-    /// Length of each piece between them, unstretched, m; 0 from one side of a seam to the other.
+    /// Unstretched length between consecutive vertices, m; 0 from one side of a seam to the other.
     pub lengths: Vec<f64>,
-    /// N per unit of strain.
+    /// Force per unit of strain, N.
     pub stiffness: f64,
 }
 
@@ -64,7 +66,7 @@ impl Path {
         Self { vertices: band.vertices.clone(), lengths, stiffness: band.stiffness }
     }
 
-    /// The path over the vertices that `number` keeps (others are `u32::MAX`).
+    /// The path over the vertices that are kept: those whose `number` is not `u32::MAX`.
     #[must_use]
     pub fn restrict(&self, number: &[u32]) -> Self {
         let mut out = Self { vertices: vec![], lengths: vec![], stiffness: self.stiffness };
@@ -113,26 +115,26 @@ impl Pieces {
         pieces
     }
 
-    /// The sheet before sewing: every vertex a node of its own.
+    /// The sheet before sewing, in which every vertex is a node.
     pub fn open_sheet(&self, cloths: &[&Fabric]) -> Result<Sheet, ClothError> {
         Sheet::new(self.rest.len(), self.triangles.clone(), self.corners(), 1.0)?
             .weighing(|t| cloths[self.cloth(t)].density)
     }
 
-    /// The sheet after sewing: every sewn point a node.
+    /// The sheet after sewing.
     pub fn sewn_sheet(&self, cloths: &[&Fabric]) -> Result<Sheet, ClothError> {
         let nodes = self.triangles.iter().map(|t| t.map(|v| self.node[v as usize])).collect();
         Sheet::sewn(self.nodes, nodes, self.corners(), 1.0)?.weighing(|t| cloths[self.cloth(t)].density)
     }
 
-    /// The pieces as they are cut, where gathers have changed the sheets; nothing where none do.
+    /// The pieces as they are cut, where gathers change the sheets; otherwise `None`.
     #[must_use]
     pub fn uncut(&self) -> Option<Result<Sheet, ClothError>> {
         self.gathered.contains(&true).then(|| Sheet::flat(&self.rest, &self.triangles, 1.0))
     }
 
-    /// Rest corners of every triangle; along a gathered seam the longer side's are drawn together
-    /// to the length of the shorter.
+    /// Rest corners of every triangle. Along a gathered seam the longer side is shortened to the
+    /// length of the shorter one.
     fn corners(&self) -> Vec<[Vector2<f64>; 3]> {
         let mut corners: Vec<[Vector2<f64>; 3]> =
             self.triangles.iter().map(|t| t.map(|v| self.rest[v as usize])).collect();
@@ -169,7 +171,7 @@ impl Pieces {
         points
     }
 
-    /// Pieces of the bands between two nodes: vertices where seams are open, else nodes.
+    /// Springs of the bands between consecutive vertices, or nodes where the seams are closed.
     #[must_use]
     pub fn springs(&self, open: bool) -> Vec<Piece> {
         let mut springs = Vec::new();
@@ -185,7 +187,7 @@ impl Pieces {
         springs
     }
 
-    /// Edges of the sewn sheet that are pressed to stay folded: the number of each among those with
+    /// Edges of the sewn sheet that are pressed to stay folded: the index of each among those with
     /// two triangles, and its angle.
     #[must_use]
     pub fn creases(&self, sheet: &Sheet) -> Vec<(usize, f64)> {
@@ -214,8 +216,8 @@ impl Pieces {
         self.panel[self.triangles[triangle][0] as usize] as usize
     }
 
-    /// The mean of `values` over the vertices of each node, weighted; where some are pinned, over
-    /// these. A pinned vertex of no triangle has no mass to be weighted by and counts as one.
+    /// The weighted mean of `values` over the vertices of each node, or over the pinned ones among
+    /// them. A pinned vertex without a triangle has no mass, and its weight is 1.
     #[must_use]
     pub fn sew(&self, values: &[Vector3<f64>], weights: &[f64]) -> Vec<Vector3<f64>> {
         let mut is_held = vec![false; self.nodes];
@@ -233,10 +235,10 @@ impl Pieces {
         sums.into_iter().map(|(v, w)| if w > 0.0 { v / w } else { v }).collect()
     }
 
-    /// The distance at which the body presses on each vertex.
+    /// The offset of body contact at each vertex, m.
     pub(crate) fn offsets(&self, system: &System<'_>) -> Vec<f64> {
         let of = |s: &BodyContact<'_>| self.node.iter().map(|&n| s.offsets[n as usize]).collect();
-        system.support.as_ref().map_or_else(Vec::new, of)
+        system.body_contact.as_ref().map_or_else(Vec::new, of)
     }
 
     /// The value of each vertex's node.
@@ -259,7 +261,7 @@ impl Pieces {
         pairs
     }
 
-    /// Pairs of nodes that stay two at one sewn point, held by thread.
+    /// Pairs of nodes at one sewn point that are not joined.
     #[must_use]
     pub fn kept_pairs(&self) -> Vec<[u32; 2]> {
         let pairs = self.seam_pairs().into_iter().map(|p| p.map(|v| self.node[v as usize]));
@@ -278,7 +280,7 @@ impl Pieces {
     }
 }
 
-/// How many cloths a scene has, that hang together by triangles or seams.
+/// The number of cloths of a scene, each connected by triangles or seams.
 pub(crate) fn count_cloths(scene: &Scene) -> usize {
     groups(
         scene.rest.len(),

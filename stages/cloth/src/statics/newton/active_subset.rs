@@ -1,73 +1,74 @@
-//! What still moves near rest settles by itself, before the whole takes its next step.
+//! Active subset: the few nodes that still move near rest are solved alone before the next step.
+//!
+//! Method: see `subdomain`. Cost: that of the active nodes and of the rings around them.
 
 use crate::statics::factor::multifrontal::{Halt, Stop};
 use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::newton::line_search::ROUNDING;
 use crate::statics::newton::nearby::Nearby;
-use crate::statics::newton::subdomain::{Part, widen};
+use crate::statics::newton::subdomain::{Subdomain, widen};
 use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, greatest};
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the greatest move from which on a node is awake.
-const AWAKE: f64 = 0.3;
+/// Share of the greatest move above which a node is active.
+const ACTIVE: f64 = 0.3;
 
-/// Rings of triangles around the awake nodes that move with them.
+/// Rings of triangles around the active nodes that move with them.
 const RINGS: usize = 2;
 
-/// Greatest share of the nodes that is worth a system of its own.
+/// Greatest share of active nodes at which they are solved alone.
 const FEW: f64 = 0.15;
 
-/// Steps of such a part at most, before the whole looks again.
-const PART_STEPS: usize = 20;
+/// Steps of the subdomain at most.
+const SUBDOMAIN_STEPS: usize = 20;
 
 impl NewtonState {
-    /// Brings the nodes that the last step moved most to rest by themselves, where they are few.
-    /// Near rest a few nodes buckle one after the other while the others sleep.
+    /// Brings the nodes that the last step moved most to rest alone, where they are few.
     ///
     /// # Errors
     /// [`Halt`], as [`Self::step`].
-    pub(crate) fn settle_awake(
+    pub(crate) fn settle_active(
         &mut self,
         system: &mut System<'_>,
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         stop: &Stop,
     ) -> Result<(), Halt> {
-        let Some(awake) = self.awake(system) else { return Ok(()) };
-        self.nearby.seek_about(system, x, &awake);
-        let pace = NewtonOptions { non_static: 0.0, ..*pace };
-        let mut part = Part::of(system, awake);
-        let (mut own, layout) = (part.pick(x), part.pick(self.linear.layout()));
-        let reach = system.layers.as_ref().map_or(f64::INFINITY, SelfContact::slack);
-        let nearby = Nearby::of_part(part.pick(self.nearby.at()), reach);
+        let Some(active) = self.active(system) else { return Ok(()) };
+        self.nearby.seek_about(system, x, &active);
+        let options = NewtonOptions { non_static: 0.0, ..*options };
+        let mut subdomain = Subdomain::of(system, active);
+        let (mut own, layout) = (subdomain.pick(x), subdomain.pick(self.linear.layout()));
+        let reach = system.self_contact.as_ref().map_or(f64::INFINITY, SelfContact::slack);
+        let nearby = Nearby::of_subdomain(subdomain.pick(self.nearby.at()), reach);
         rayon::scope(|_| {
-            let mut inner = Self::among(nearby, &mut part.system, &layout, &own, self.dt);
-            for _ in 0..PART_STEPS {
-                let outcome = inner.step_here(&mut part.system, &mut own, &pace, stop)?;
-                if outcome.at_rest || inner.left {
+            let mut inner = Self::among(nearby, &mut subdomain.system, &layout, &own, self.dt);
+            for _ in 0..SUBDOMAIN_STEPS {
+                let outcome = inner.step_here(&mut subdomain.system, &mut own, &options, stop)?;
+                if outcome.at_rest || inner.has_left {
                     break;
                 }
             }
             Ok::<(), Halt>(())
         })?;
-        part.put_back(&own, system, x);
+        subdomain.put_back(&own, system, x);
         self.moved();
         Ok(())
     }
 
     /// The nodes that the last step moved most and those around them, if they are few.
-    fn awake(&self, system: &System<'_>) -> Option<Vec<bool>> {
+    fn active(&self, system: &System<'_>) -> Option<Vec<bool>> {
         let most = greatest(&self.moves);
-        if system.is_tangled() || !system.pulls.is_empty() || most < ROUNDING {
+        if system.is_intersecting() || !system.targets.is_empty() || most < ROUNDING {
             return None;
         }
-        let mut awake: Vec<bool> = self.moves.iter().map(|m| m.norm() > AWAKE * most).collect();
-        widen(system, &mut awake, RINGS);
-        let count = awake.iter().filter(|a| **a).count();
-        (count as f64 <= FEW * awake.len() as f64).then_some(awake)
+        let mut active: Vec<bool> = self.moves.iter().map(|m| m.norm() > ACTIVE * most).collect();
+        widen(system, &mut active, RINGS);
+        let count = active.iter().filter(|a| **a).count();
+        (count as f64 <= FEW * active.len() as f64).then_some(active)
     }
 }
 
@@ -78,11 +79,11 @@ mod tests {
     use crate::statics::drive::solve::{Equilibrium, StaticEquilibrium};
     use std::ops::ControlFlow;
 
-    /// A skirt sewn on a form, and its steps on the finest mesh.
+    /// A skirt sewn on a form, and its steps on the finest level.
     fn skirt([nx, ny]: [u32; 2], asleep: bool) -> (Equilibrium, usize) {
         let (scene, mut levels) = (generate::tube(nx, ny), vec![]);
-        let rest = StaticEquilibrium { asleep, ..StaticEquilibrium::default() };
-        let state = rest.solve(&scene, &mut |level| {
+        let settings = StaticEquilibrium { asleep, ..StaticEquilibrium::default() };
+        let state = settings.solve(&scene, &mut |level| {
             levels.push(level.nodes);
             ControlFlow::Continue(())
         });
@@ -91,12 +92,12 @@ mod tests {
     }
 
     #[test]
-    fn while_few_nodes_move_the_others_sleep_and_rest_is_found_in_fewer_steps() {
+    fn an_active_subset_finds_rest_in_fewer_steps_of_the_whole() {
         let (mut few, mut many) = (0, 0);
         for size in [[40, 14], [48, 12], [32, 16]] {
-            let ((asleep, a), (awake, b)) = (skirt(size, true), skirt(size, false));
+            let ((subset, a), (all, b)) = (skirt(size, true), skirt(size, false));
             (few, many) = (few + a, many + b);
-            let apart = asleep.energy / awake.energy - 1.0;
+            let apart = subset.energy / all.energy - 1.0;
             assert!(apart.abs() < 0.01, "{apart}");
         }
         assert!(few < many, "{few} {many}");

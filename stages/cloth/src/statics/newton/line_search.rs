@@ -1,5 +1,8 @@
-//! How much of a step is taken: the potential must fall below the highest of the last few (Grippo,
-//! Lampariello, Lucidi 1986).
+//! Non-monotone line search: how much of a step is made.
+//!
+//! Method: the step is halved until the potential is below the highest of the last few, by a share
+//! of the slope (Grippo, Lampariello, Lucidi 1986). Cost: one evaluation of the energy a trial.
+//! Limit: after [`MOST_HALVINGS`] halvings the rest of the step is made as it is.
 
 use crate::statics::forces::system::{Evaluation, System};
 use crate::statics::newton::state::greatest;
@@ -7,7 +10,7 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Halvings of a step before it is taken as it is.
+/// Halvings of a step before it is made as it is.
 const MOST_HALVINGS: u32 = 6;
 
 /// Moves shorter than this change the potential by less than its rounding, m.
@@ -16,20 +19,20 @@ pub(crate) const ROUNDING: f64 = 1e-10;
 /// Share of the slope by which the potential must fall (Armijo's rule).
 const LEAST_FALL: f64 = 1e-4;
 
-/// Steps whose highest potential a new one is measured by. More lets the cloth pass through worse
-/// states to better ones.
+/// Steps whose highest potential a new one must be below. More steps let the cloth pass through
+/// higher potentials to a lower one.
 const MEMORY: usize = 8;
 
-/// The way gone in a step.
-pub(crate) struct Way {
-    /// The share of the step that is left.
+/// The accepted share of a step.
+pub(crate) struct Accepted {
+    /// The share of the step that is made.
     pub share: f64,
-    /// What was found at its end, if anybody looked.
+    /// The energy at its end, if it was evaluated.
     pub end: Option<Evaluation>,
 }
 
-/// Shortens the step until the potential falls below the highest of the last ones; it is `start`
-/// where the step begins.
+/// Shortens `moves` until the potential falls below the highest of the last ones. `start` is the
+/// potential at the beginning of the step.
 pub(crate) fn descend(
     system: &System<'_>,
     x: &[Vec3],
@@ -37,9 +40,9 @@ pub(crate) fn descend(
     moves: &mut [Vec3],
     start: f64,
     history: &mut Vec<f64>,
-) -> Way {
+) -> Accepted {
     if greatest(moves) < ROUNDING {
-        return Way { share: 1.0, end: None };
+        return Accepted { share: 1.0, end: None };
     }
     let slope: f64 = g.iter().zip(moves.iter()).map(|(g, d)| g.dot(d)).sum();
     history.push(start);
@@ -51,14 +54,14 @@ pub(crate) fn descend(
     let mut share = 1.0;
     for _ in 0..MOST_HALVINGS {
         let trial: Vec<Vec3> = x.iter().zip(moves.iter()).map(|(p, d)| p + d).collect();
-        let visit = system.visit(&trial);
-        if visit.energy <= highest + LEAST_FALL * share * slope.min(0.0) {
-            return Way { share, end: Some(visit) };
+        let end = system.evaluate(&trial);
+        if end.energy <= highest + LEAST_FALL * share * slope.min(0.0) {
+            return Accepted { share, end: Some(end) };
         }
         share *= 0.5;
         shorten(moves, 0.5);
     }
-    Way { share, end: None }
+    Accepted { share, end: None }
 }
 
 /// Shortens all moves alike.

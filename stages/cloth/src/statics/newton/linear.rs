@@ -1,4 +1,9 @@
 //! The linear problem of each Newton step: matrix, factor and solution, kept from step to step.
+//!
+//! Method: a sparse Cholesky factorization by fronts (see `factor`). The pattern is that of the
+//! sheet and of the contacts of the last steps. Where the matrix is not positive definite, it is
+//! assembled without compression, then with more inertia. Cost: one factorization, O(n^1.5); a new
+//! order of elimination where contacts are new.
 
 use crate::linear::Pattern;
 use crate::statics::factor::mixed::{Matrix, Mixed};
@@ -12,30 +17,32 @@ use std::collections::BTreeMap;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of compression that the matrix has near rest, if it is positive definite with it. All of
-/// it is the true second derivative, which few limp states can factor; none of it makes folds that
-/// are about to form far too stiff.
+/// Share of the compressive stress in the matrix near rest, where the matrix stays positive
+/// definite. With all of it the matrix is the true second derivative, which is indefinite in most
+/// states; without it, folds that are about to form are far too stiff.
 const COMPRESSION: f64 = 0.7;
 
-/// Steps below this are near rest; before, the matrix without compression converges sooner, m.
+/// Longest move of a step near rest, m. Farther from rest the matrix without compression converges
+/// sooner.
 const NEAR_REST: f64 = 2e-3;
 
-/// Inertia beyond which a matrix that is not positive definite has lost its numbers, 1/s².
+/// Inertia above which a matrix that is not positive definite must have numbers that are not
+/// finite, 1/s².
 const MOST_INERTIA: f64 = 1e12;
 
-/// Steps for which contacts keep their places in the matrix: those that come and go are soon back,
-/// and new places cost an order of elimination.
+/// Steps for which contacts keep their places in the matrix. Contacts that end are often soon back,
+/// and new places cost a new order of elimination.
 const REMEMBERED: u32 = 8;
 
 /// The matrix and its factor.
 pub(crate) struct Linear {
     layout: Vec<Vec3>,
-    /// Groups of nodes that touched of late, and at which step.
+    /// Groups of nodes in contact in the last steps, with the step of their last contact.
     touched: BTreeMap<[u32; 4], u32>,
     steps: u32,
-    /// What the sheet couples.
+    /// The pattern of the sheet alone.
     own: Pattern,
-    /// The same with what touches, and where the sheet's slots are in it.
+    /// The pattern with contacts, and the slots of the sheet in it.
     pattern: Pattern,
     slots: Vec<u32>,
     symbolic: Symbolic,
@@ -48,7 +55,7 @@ impl Linear {
     pub(crate) fn new(system: &mut System<'_>, layout: &[Vec3]) -> Self {
         let own = system.pattern();
         system.elastic.bind(&own);
-        let touched = system.layers.iter().flat_map(SelfContact::groups).map(|g| (*g, 0)).collect();
+        let touched = system.self_contact.iter().flat_map(SelfContact::groups).map(|g| (*g, 0)).collect();
         let (pattern, slots) = widened(&own, &touched);
         system.elastic.follow(&pattern, &slots);
         let layout = smoothed(&own, layout);
@@ -57,15 +64,16 @@ impl Linear {
         Self { layout, touched, steps: 0, own, pattern, slots, symbolic, values, factor }
     }
 
-    /// What orders the elimination.
+    /// The places that order the elimination.
     pub(crate) fn layout(&self) -> &[Vec3] {
         &self.layout
     }
 
-    /// Follows the contacts: new pairs need new places in the matrix. Whether any did.
+    /// Follows the contacts, of which new pairs need new places in the matrix; returns whether any
+    /// did.
     pub(crate) fn follow(&mut self, system: &mut System<'_>) -> bool {
         self.steps += 1;
-        let groups = || system.layers.iter().flat_map(SelfContact::groups);
+        let groups = || system.self_contact.iter().flat_map(SelfContact::groups);
         self.touched.extend(groups().map(|g| (*g, self.steps)));
         let known = groups().all(|g| self.pattern.couples(g));
         if !known {
@@ -76,7 +84,7 @@ impl Linear {
         !known
     }
 
-    /// Takes up elements whose stiffness has changed, and other pins.
+    /// Takes over changed stiffness of elements, and changed pins.
     pub(crate) fn bind(&mut self, system: &mut System<'_>) {
         if self.own.held() == system.pinned {
             system.elastic.bind(&self.own);
@@ -88,14 +96,14 @@ impl Linear {
         }
     }
 
-    /// Lays the matrix out anew, for what touches and what touched of late.
+    /// Makes the pattern anew, for present and recent contacts.
     fn widen(&mut self, system: &mut System<'_>) {
         (self.pattern, self.slots) = widened(&self.own, &self.touched);
         system.elastic.follow(&self.pattern, &self.slots);
         self.symbolic = Symbolic::new(&self.pattern, &self.layout);
     }
 
-    /// The step of pseudo-time `dt` from `x`, the last step having moved nodes by up to `last`.
+    /// The step of pseudo-time `dt` from `x`; `last` is the longest move of the last step.
     pub(crate) fn step(
         &mut self,
         system: &System<'_>,
@@ -114,14 +122,14 @@ impl Linear {
             match self.factor.solve(matrix, &right, precision, compression > 0.0, stop) {
                 Ok(moves) => return Ok(moves),
                 Err(Halt::NotPositive(_)) if compression > 0.0 => compression = 0.0,
-                // Rounding can cost a nearly singular matrix its sign; more inertia gives it back.
+                // Rounding may make a nearly singular matrix indefinite; more inertia prevents it.
                 Err(Halt::NotPositive(_)) if shift <= MOST_INERTIA => shift *= 100.0,
                 Err(halt) => return Err(halt),
             }
         }
     }
 
-    /// The step from a place so near that of the last one that its factor will do.
+    /// The step with the factor of the last step, from nearly the same positions.
     pub(crate) fn again(&self, g: &[Vec3]) -> Vec<Vec3> {
         let mut step: Vec<Vec3> = g.iter().map(|g| -g).collect();
         self.factor.again(&self.symbolic, &mut step);
@@ -129,7 +137,7 @@ impl Linear {
     }
 }
 
-/// The pattern of a sheet and of what touches, and where the sheet's slots are in it.
+/// The pattern of a sheet and of contacts, and the slots of the sheet in it.
 fn widened(own: &Pattern, touched: &BTreeMap<[u32; 4], u32>) -> (Pattern, Vec<u32>) {
     own.with(|visit| touched.keys().for_each(|g| visit(g)))
 }
@@ -156,12 +164,12 @@ mod tests {
         let [a, b, c] = scene.triangles[0];
         let middle = (x[a as usize] + x[b as usize] + x[c as usize]) / 3.0;
         let pair = Pair { kind: Kind::VertexTriangle, nodes: [n, a, b, c] };
-        system.layers.as_mut().unwrap().pairs = vec![pair];
-        let thickness = system.layers.as_ref().unwrap().thickness;
+        system.self_contact.as_mut().unwrap().pairs = vec![pair];
+        let thickness = system.self_contact.as_ref().unwrap().thickness;
         let mut linear = Linear::new(&mut system, &scene.positions);
         let mut follow = |height: f64, system: &mut System<'_>| {
             x[n as usize] = middle + Vec3::y() * height;
-            system.touch(&x);
+            system.update_contacts(&x);
             linear.follow(system)
         };
         assert!(!follow(2.0 * thickness, &mut system));

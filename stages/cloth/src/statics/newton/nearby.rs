@@ -1,12 +1,13 @@
-//! Pairs of cloth that may meet, kept while the cloth hardly moves.
+//! Neighbour pairs of cloth that may collide, kept while the cloth hardly moves.
 //!
-//! Pairs are sought a little farther out than contact reaches: a node's hold until it has moved by
-//! that slack, which near rest is many steps. Then they are sought anew for the nodes that have,
-//! while the others keep theirs; so a search costs what moves. A node with a long way before it
-//! looks along that way, for that step alone.
+//! Method: pairs are sought up to a slack beyond the thickness of contact. The pairs of a node stay
+//! valid until it has moved by that slack, which near rest takes many steps. Then they are sought
+//! anew for the nodes that have moved so far; the others keep theirs. The pairs of a node with a
+//! long move are sought along that move, and are valid for that step only. Cost: a search of the
+//! tree for each node that has moved. Limit: a subdomain knows pairs only within a region.
 
-use crate::contact::give_way::give_way;
-use crate::contact::limit::{hold_apart, meet};
+use crate::contact::response::respond;
+use crate::contact::step_limit::{colliding, limit_with_search};
 use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use nalgebra::Vector3;
@@ -15,26 +16,26 @@ use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the slack that may be used up where a part begins: it goes on with the pairs that are
-/// known.
+/// Share of the slack that may be used up when a subdomain begins, which keeps the known pairs.
 const KEPT: f64 = 0.3;
 
-/// Share of the nodes with a long way from which on all look along their ways, and no farther.
+/// Share of the nodes with a long move above which the pairs of all nodes are sought along their
+/// moves.
 const MOST_LONG: f64 = 0.3;
 
-/// What is near what, and where the nodes were when it was sought.
+/// Neighbour pairs, and the positions of the nodes when the pairs were sought.
 pub(crate) struct Nearby {
     tree: Option<ClothTree>,
-    /// Where each node's pairs were sought; nothing where they hold for one step alone.
+    /// Where the pairs of each node were sought; `None` where they are valid for one step only.
     at: Vec<Option<Vec3>>,
-    /// What a part of a system knows of is about it: this holds while its nodes stay near where
-    /// they were.
+    /// The region in which the pairs of a subdomain are known.
     fence: Option<Fence>,
-    /// Whether layers that lie in each other met in the last step.
+    /// Whether merged layers collided in the last step.
     jammed: bool,
 }
 
-/// Where the nodes of a part were when it was cut out, and how far they may go from there, m.
+/// Where the nodes of a subdomain were when it was cut out, and how far they may move from there,
+/// m.
 struct Fence {
     at: Vec<Vec3>,
     reach: f64,
@@ -45,41 +46,41 @@ impl Nearby {
         Self { tree, at: vec![], fence: None, jammed: false }
     }
 
-    /// Seeks the pairs about `x`, so that they hold for a part whose nodes are `awake`.
-    pub(crate) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3], awake: &[bool]) {
-        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
+    /// Seeks the pairs about `x`, so that they are valid for a subdomain of the `active` nodes.
+    pub(crate) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3], active: &[bool]) {
+        if let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) {
             let still = vec![Vec3::zeros(); x.len()];
-            let mut moved = outside(&self.at, x, &still, layers.slack());
-            let near_end = outside(&self.at, x, &still, KEPT * layers.slack());
-            moved.iter_mut().zip(near_end).zip(awake).for_each(|((m, n), a)| *m |= n && *a);
+            let mut moved = outside(&self.at, x, &still, self_contact.slack());
+            let near_end = outside(&self.at, x, &still, KEPT * self_contact.slack());
+            moved.iter_mut().zip(near_end).zip(active).for_each(|((m, n), a)| *m |= n && *a);
             if !moved.contains(&true) {
                 return;
             }
             self.at.resize(x.len(), None);
             self.at.iter_mut().zip(x).zip(&moved).filter(|(_, m)| **m).for_each(|((a, p), _)| *a = Some(*p));
-            layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, &still]);
+            self_contact.pairs = self.renewed(tree, self_contact, &self_contact.pairs, &moved, [x, &still]);
         }
     }
 
-    /// Where each node was when its pairs were sought.
+    /// Where the pairs of each node were sought.
     pub(crate) fn at(&self) -> &[Option<Vec3>] {
         &self.at
     }
 
-    /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by
-    /// `reach` from there, m.
-    pub(crate) fn of_part(at: Vec<Option<Vec3>>, reach: f64) -> Self {
+    /// Of a subdomain whose pairs were sought at `at`, and are valid while no node moves by `reach`
+    /// from there, m.
+    pub(crate) fn of_subdomain(at: Vec<Option<Vec3>>, reach: f64) -> Self {
         let at = at.into_iter().flatten().collect();
         Self { tree: None, at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
 
-    /// For a part that seeks pairs in a tree of its own, which knows all that its nodes may meet
+    /// Of a subdomain with a tree of its own, which holds all triangles that its nodes may meet
     /// within `reach` of `at`, m.
     pub(crate) fn fenced(tree: ClothTree, at: Vec<Vec3>, reach: f64) -> Self {
         Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
 
-    /// The share of `moves` from `x` for which a part knows what is about it.
+    /// The share of `moves` from `x` that stays in the region in which pairs are known.
     pub(crate) fn within_reach(&self, x: &[Vec3], moves: &[Vec3]) -> f64 {
         let Some(Fence { at, reach }) = &self.fence else { return 1.0 };
         let share = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| {
@@ -89,10 +90,10 @@ impl Nearby {
         at.iter().zip(x).zip(moves).map(share).fold(1.0, f64::min)
     }
 
-    /// Sees to it that the pairs of the layers hold for `moves` from `x`.
+    /// Makes the pairs valid for `moves` from `x`.
     pub(crate) fn seek(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &[Vec3]) {
-        let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) else { return };
-        let slack = layers.slack();
+        let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) else { return };
+        let slack = self_contact.slack();
         let moved = outside(&self.at, x, moves, slack);
         if !moved.contains(&true) {
             return;
@@ -101,22 +102,22 @@ impl Nearby {
         let long = moved.iter().zip(moves).filter(|(moved, m)| **moved && is_long(m)).count();
         if long as f64 > MOST_LONG * x.len() as f64 {
             self.at = vec![None; x.len()];
-            layers.pairs = tree.pairs(x, moves, layers.thickness);
+            self_contact.pairs = tree.pairs(x, moves, self_contact.thickness);
             return;
         }
         self.at.resize(x.len(), None);
         for (i, _) in moved.iter().enumerate().filter(|(_, m)| **m) {
             self.at[i] = (!is_long(&moves[i])).then_some(x[i]);
         }
-        layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, moves]);
+        self_contact.pairs = self.renewed(tree, self_contact, &self_contact.pairs, &moved, [x, moves]);
     }
 
-    /// The `known` pairs, those of the `moved` nodes sought anew where they are now or, for one
-    /// step alone, along their way.
+    /// The `known` pairs, with those of the `moved` nodes sought anew at their positions or, for
+    /// one step, along their moves.
     fn renewed(
         &self,
         tree: &ClothTree,
-        layers: &SelfContact,
+        self_contact: &SelfContact,
         known: &[Pair],
         moved: &[bool],
         [x, moves]: [&[Vec3]; 2],
@@ -126,40 +127,47 @@ impl Nearby {
         let ways: Vec<Vec3> = self.at.iter().zip(moves).map(way).collect();
         let mut pairs: Vec<Pair> =
             known.iter().filter(|p| !p.nodes.iter().any(|&i| moved[i as usize])).copied().collect();
-        pairs.extend(tree.pairs_of(moved, &places, &ways, layers.thickness + 2.0 * layers.slack()));
-        // Two sorted runs.
+        pairs.extend(tree.pairs_of(
+            moved,
+            &places,
+            &ways,
+            self_contact.thickness + 2.0 * self_contact.slack(),
+        ));
+        // Both parts are sorted, which a merge sort uses.
         pairs.sort();
         pairs
     }
 
-    /// How often triangles cross at `x`.
+    /// How many crossings the cloth has at `x`.
     pub(crate) fn crossings(&self, x: &[Vec3]) -> usize {
         self.tree.as_ref().map_or(0, |t| t.crossings(x).len())
     }
 
-    /// Changes moves that would lead cloth through cloth: it gives way where it can, and ends
-    /// before it meets where it cannot. The share of the moves that is left; of cloth that gets
-    /// free of crossings, which takes long ways, all counts as left.
+    /// Changes moves that would lead cloth through cloth: the cloth gives way where it can, and
+    /// otherwise its moves are shortened until no pair collides. Returns the share of the moves
+    /// that is left, or 1 while intersections are resolved, which takes long moves.
     pub(crate) fn limit(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
         if self.tree.is_none() && self.fence.is_none() {
             return 1.0;
         }
-        let Some(layers) = &system.layers else { return 1.0 };
+        let Some(self_contact) = &system.self_contact else { return 1.0 };
         let wanted = norm(moves);
-        let apart: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
-        let meeting = meet(x, moves, &apart);
-        if !meeting.is_empty() {
-            self.jammed = !layers.crowded && meeting.iter().any(|p| layers.is_merged(p, x));
-            let pushed = give_way(x, moves, &apart, meeting, &system.pinned);
-            self.keep_known(layers.slack(), x, moves, &pushed);
-            system.clear_of_body(x, moves, |i| pushed[i]);
-            self.hold_apart(system, x, moves);
+        let apart: Vec<Pair> =
+            self_contact.pairs.iter().filter(|p| !self_contact.is_intersecting(p)).copied().collect();
+        let colliding_pairs = colliding(x, moves, &apart);
+        if !colliding_pairs.is_empty() {
+            self.jammed =
+                !self_contact.stacked && colliding_pairs.iter().any(|p| self_contact.is_merged(p, x));
+            let changed = respond(x, moves, &apart, colliding_pairs, &system.pinned);
+            self.keep_known(self_contact.slack(), x, moves, &changed);
+            system.clear_of_body(x, moves, |i| changed[i]);
+            self.limit_step(system, x, moves);
         }
-        let free = system.layers.as_ref().is_none_or(|l| l.tangled.is_empty());
+        let free = system.self_contact.as_ref().is_none_or(|c| c.intersecting.is_empty());
         if wanted > 0.0 && free { norm(moves) / wanted } else { 1.0 }
     }
 
-    /// Shortens moves that were changed to what the known pairs hold for.
+    /// Shortens moves that were `changed` to those for which the known pairs are valid.
     fn keep_known(&self, slack: f64, x: &[Vec3], moves: &mut [Vec3], changed: &[bool]) {
         for (i, _) in changed.iter().enumerate().filter(|(_, c)| **c) {
             let known = self.at.get(i).copied().flatten().map(|a| slack - (x[i] - a).norm());
@@ -172,33 +180,34 @@ impl Nearby {
         }
     }
 
-    /// Ends moves before cloth meets cloth.
-    fn hold_apart(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
-        let Some(layers) = &mut system.layers else { return };
-        let counts = |p: &Pair| !layers.is_tangled(p);
-        // Pairs all round hold for every short move, those along a way for that way.
+    /// Shortens moves until no pair collides.
+    fn limit_step(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
+        let Some(self_contact) = &mut system.self_contact else { return };
+        let counts = |p: &Pair| !self_contact.is_intersecting(p);
+        // Pairs sought at a position are valid for every short move, those sought along a move for
+        // that move.
         let long: Vec<bool> = self.at.iter().map(Option::is_none).collect();
         let all = long.iter().all(|l| *l);
         let tree = self.tree.as_ref().filter(|_| long.contains(&true));
         let seek = |moves: &[Vec3]| {
             tree.map(|t| match all {
-                true => t.pairs(x, moves, layers.thickness),
-                false => self.renewed(t, layers, &layers.pairs, &long, [x, moves]),
+                true => t.pairs(x, moves, self_contact.thickness),
+                false => self.renewed(t, self_contact, &self_contact.pairs, &long, [x, moves]),
             })
         };
-        let first = seek(moves).unwrap_or_else(|| layers.pairs.clone());
-        layers.pairs = hold_apart(x, moves, first, counts, seek).0;
+        let first = seek(moves).unwrap_or_else(|| self_contact.pairs.clone());
+        self_contact.pairs = limit_with_search(x, moves, first, counts, seek).0;
     }
 
-    /// Whether cloth must be taken out of cloth.
-    pub(crate) fn is_tangled(&self, system: &System<'_>) -> bool {
-        system.is_tangled() || self.jammed
+    /// Whether intersections are to be resolved.
+    pub(crate) fn is_intersecting(&self, system: &System<'_>) -> bool {
+        system.is_intersecting() || self.jammed
     }
 
-    /// Takes up crossings that the start has, or that are left of them.
-    pub(crate) fn untangle(&mut self, system: &mut System<'_>, x: &[Vec3]) {
-        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
-            layers.untangle(&tree.crossings(x), x);
+    /// Finds the crossings at `x`, which self-contact then resolves.
+    pub(crate) fn resolve_intersections(&mut self, system: &mut System<'_>, x: &[Vec3]) {
+        if let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) {
+            self_contact.resolve_intersections(&tree.crossings(x), x);
             self.jammed = false;
         }
     }
@@ -208,7 +217,8 @@ fn norm(moves: &[Vec3]) -> f64 {
     moves.iter().map(Vec3::norm_squared).sum::<f64>().sqrt()
 }
 
-/// Which nodes leave the sphere of that radius about where they were, if they were anywhere.
+/// Which nodes leave the sphere of radius `reach` about their known position. A node without one
+/// counts as outside.
 fn outside(was: &[Option<Vec3>], x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<bool> {
     let leaves = |(i, (p, m)): (usize, (&Vec3, &Vec3))| {
         let left = reach - m.norm();

@@ -1,30 +1,37 @@
-//! Whether something still shrinks from step to step.
+//! Whether a value still shrinks from step to step. Cost: O(1).
 
 use std::cell::Cell;
 
-/// The least value so far, and how many steps ago it was.
+/// How fast a value must shrink.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Patience {
-    most: usize,
-    share: f64,
+    /// Steps within which it must shrink.
+    pub(crate) steps: usize,
+    /// Share of itself by which it must shrink.
+    pub(crate) share: f64,
+}
+
+/// The least value so far, and how many steps ago it was.
+pub(crate) struct Shrinking {
+    patience: Patience,
     least: Cell<f64>,
     steps: Cell<usize>,
 }
 
-impl Patience {
-    /// A value must shrink within `most` steps by more than that share of itself.
-    pub(crate) fn new((most, share): (usize, f64)) -> Self {
-        Self { most, share, least: Cell::new(f64::INFINITY), steps: Cell::new(0) }
+impl Shrinking {
+    pub(crate) fn new(patience: Patience) -> Self {
+        Self { patience, least: Cell::new(f64::INFINITY), steps: Cell::new(0) }
     }
 
-    /// Looks at the value after a step; whether it has shrunk of late.
+    /// Takes the value after a step, and returns whether it has shrunk within the allowed steps.
     pub(crate) fn goes_on(&self, value: f64) -> bool {
-        if value < (1.0 - self.share) * self.least.get() {
+        if value < (1.0 - self.patience.share) * self.least.get() {
             self.least.set(value);
             self.steps.set(0);
         } else {
             self.steps.set(self.steps.get() + 1);
         }
-        self.steps.get() < self.most
+        self.steps.get() < self.patience.steps
     }
 }
 
@@ -34,13 +41,13 @@ mod tests {
 
     #[test]
     fn a_value_goes_on_while_it_shrinks() {
-        let patience = Patience::new((12, 0.01));
+        let shrinking = Shrinking::new(Patience { steps: 12, share: 0.01 });
         let mut value = 1.0;
         for _ in 0..50 {
             value *= 0.98;
-            assert!(patience.goes_on(value));
+            assert!(shrinking.goes_on(value));
         }
-        let steps = (0..50).take_while(|_| patience.goes_on(value)).count();
+        let steps = (0..50).take_while(|_| shrinking.goes_on(value)).count();
         assert_eq!(steps, 12 - 1);
     }
 }

@@ -4,41 +4,41 @@ use crate::energy::Models;
 use crate::statics::factor::scalar::Precision;
 use std::time::Duration;
 
-/// Settings of the rest solver.
+/// Settings of the static solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticEquilibrium {
-    /// Membrane and bending.
+    /// Membrane and bending models.
     pub models: Models,
-    /// Speed that cloth at rest must not gain in a sixtieth of a second, m/s.
+    /// Cloth at rest gains less than this speed in a sixtieth of a second, m/s.
     pub speed: f64,
-    /// The share of the vertices that may gain more: some never come to rest where the skin of a
+    /// Share of the vertices that may gain more: some never come to rest where the surface of a
     /// body folds.
     pub non_static: f64,
-    /// The coarsest level has at most about this many nodes.
+    /// Nodes of the coarsest level, at most about this many.
     pub coarsest: usize,
-    /// Steps on each level but the finest.
+    /// Steps at most on each level but the finest.
     pub coarse_steps: usize,
-    /// Steps on the finest level before giving up.
+    /// Steps at most on the finest level.
     pub finest_steps: usize,
-    /// Seams are joined when their gaps are below this, m.
+    /// Gap below which seams are joined, m.
     pub join_gap: f64,
-    /// Wall time before giving up.
+    /// Wall time at most.
     pub budget: Duration,
-    /// Whether bending starts far too stiff and is let go level by level, so that the state of rest
-    /// hardly depends on where the cloth began.
+    /// Whether bending starts far too stiff and is lowered level by level, so that the equilibrium
+    /// hardly depends on the initial positions.
     pub bending_continuation: bool,
-    /// Whether the cloth goes on from where it is, on its own mesh alone: what came to rest on a
-    /// coarser mesh keeps its folds.
+    /// Whether the cloth is solved from its present state on its own mesh alone, without coarser
+    /// levels, so that it keeps its folds.
     pub from_here: bool,
-    /// Whether cloth passes through cloth while its seams close: what lies in its way does not keep
-    /// them open, and the sewn garment is taken out of itself.
+    /// Whether cloth passes through cloth while its seams close. Other cloth then does not keep
+    /// them open, and the crossings of the sewn garment are resolved.
     pub sew_through: bool,
-    /// Whether a step of a tenth of a second and more in which nothing is faster than `speed`
+    /// Whether a step of at least a tenth of a second in which nothing is faster than `speed`
     /// proves rest, too.
     pub long_proof: bool,
-    /// How precise the factor of each step is.
+    /// Precision of the factor of each step.
     pub precision: Precision,
-    /// Whether what rests sleeps while few nodes move, which settle by themselves.
+    /// Whether nodes at rest are held still while few others move, which are then solved alone.
     pub asleep: bool,
 }
 

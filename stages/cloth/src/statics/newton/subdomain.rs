@@ -1,9 +1,9 @@
-//! The part of a system that still moves, by itself: sleeping nodes hold still.
+//! Subdomain solve: the active nodes of a system as a system of their own, with all others pinned.
 //!
-//! Near rest most of a garment sleeps while a few nodes buckle one after the other. A step that
-//! moves only these, and the elements about them, costs what they cost (nonlinear elimination:
-//! Lanzkron, Rose, Wilkes 1996). The whole system looks again afterwards, so the state of rest is
-//! that of the whole.
+//! Method: nonlinear elimination (Lanzkron, Rose, Wilkes 1996). Near rest most of a garment is at
+//! rest while a few nodes buckle one after the other. The subdomain has the active nodes and the
+//! nodes to which elements, seams and contacts couple them. Cost: a step costs what its nodes cost;
+//! O(n) to cut it out. Limits: only the whole system can prove that it is at rest.
 
 use crate::contact::friction::FrictionContact;
 use crate::energy::Subset;
@@ -19,112 +19,112 @@ use toile_geometry::pair::Pair;
 type Vec3 = Vector3<f64>;
 
 /// Some nodes of a system as a system of their own.
-pub(crate) struct Part<'a> {
-    /// The awake nodes and those around them, which are pinned.
+pub(crate) struct Subdomain<'a> {
+    /// The active nodes, and the pinned nodes to which they are coupled.
     pub(crate) system: System<'a>,
-    /// Which nodes these are of the whole, ascending.
+    /// Their indices in the whole system, ascending.
     nodes: Vec<u32>,
     cut: Subset,
-    /// How many such parts, one on the other, it stands for.
-    bundle: f64,
+    /// How many stacked subdomains of the same shape it stands for.
+    multiplicity: f64,
 }
 
-/// Widens a set of nodes by the elements they are in, so many times.
-pub(crate) fn widen(system: &System<'_>, awake: &mut [bool], rings: usize) {
+/// Widens a set of nodes by the elements that they are in, `rings` times.
+pub(crate) fn widen(system: &System<'_>, active: &mut [bool], rings: usize) {
     for _ in 0..rings {
-        let was = awake.to_vec();
+        let was = active.to_vec();
         for nodes in system.elastic.faces().iter().filter(|t| t.iter().any(|&i| was[i as usize])) {
-            nodes.iter().for_each(|&i| awake[i as usize] = true);
+            nodes.iter().for_each(|&i| active[i as usize] = true);
         }
     }
 }
 
-impl<'a> Part<'a> {
-    /// The `awake` nodes of a system, and what holds them.
-    pub(crate) fn of(system: &System<'a>, awake: Vec<bool>) -> Self {
-        let seen = awake.clone();
-        Self::beside(system, awake, seen)
+impl<'a> Subdomain<'a> {
+    /// The `active` nodes of a system and the nodes to which they are coupled.
+    pub(crate) fn of(system: &System<'a>, active: Vec<bool>) -> Self {
+        let included = active.clone();
+        Self::with_neighbours(system, active, included)
     }
 
-    /// The same with all that is `seen` from them besides: what they may meet on their way.
-    pub(crate) fn beside(system: &System<'a>, awake: Vec<bool>, mut seen: Vec<bool>) -> Self {
-        let mut see = |nodes: &[u32]| {
-            if nodes.iter().any(|&i| awake[i as usize]) {
-                nodes.iter().for_each(|&i| seen[i as usize] = true);
+    /// The same with the `included` nodes, which the active ones may meet.
+    pub(crate) fn with_neighbours(system: &System<'a>, active: Vec<bool>, mut included: Vec<bool>) -> Self {
+        let mut include = |nodes: &[u32]| {
+            if nodes.iter().any(|&i| active[i as usize]) {
+                nodes.iter().for_each(|&i| included[i as usize] = true);
             }
         };
-        system.elastic.couplings(&mut see);
-        system.threads.iter().for_each(|t| see(&t.nodes));
-        system.layers.iter().flat_map(|l| &l.pairs).for_each(|p| see(&p.nodes));
-        let (cut, nodes) = Subset::new(awake, &seen);
-        Self { system: cut_out(system, &cut, &nodes), nodes, cut, bundle: 1.0 }
+        system.elastic.couplings(&mut include);
+        system.seam_forces.iter().for_each(|t| include(&t.nodes));
+        system.self_contact.iter().flat_map(|c| &c.pairs).for_each(|p| include(&p.nodes));
+        let (cut, nodes) = Subset::new(active, &included);
+        Self { system: cut_out(system, &cut, &nodes), nodes, cut, multiplicity: 1.0 }
     }
 
-    /// Values of the whole at the part's nodes.
+    /// The values of the whole system at the nodes of the subdomain.
     pub(crate) fn pick<T: Clone>(&self, of: &[T]) -> Vec<T> {
         pick(&self.nodes, of)
     }
 
-    /// The tree of its triangles, of which only those of awake nodes look for what they may meet.
-    /// `layout` is that of the part.
+    /// The tree of its triangles, in which only those of active nodes seek pairs. `layout` is that
+    /// of the subdomain.
     pub(crate) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
-        let awake: Vec<bool> = self.pick(self.cut.active());
-        whole.part(&self.nodes, self.cut.index(), layout).with_active(&awake)
+        let active: Vec<bool> = self.pick(self.cut.active());
+        whole.part(&self.nodes, self.cut.index(), layout).with_active(&active)
     }
 
-    /// This part, to stand for so many of one shape, one on the other, of which it is the lowest:
-    /// what lies under it carries them all. Told in the forces of one: contact is softer by that
-    /// number, and so is what presses for friction.
+    /// This subdomain as the lowest of `count` stacked ones of the same shape, so that the cloth
+    /// below carries them all. In the forces of one of them, contact and the loads of friction are
+    /// smaller by that factor.
     pub(crate) fn standing_for(mut self, count: usize) -> Self {
-        self.bundle = count as f64;
-        self.weigh(1.0 / self.bundle);
+        self.multiplicity = count as f64;
+        self.scale_contact(1.0 / self.multiplicity);
         self
     }
 
-    /// Scales contact and its loads.
-    fn weigh(&mut self, factor: f64) {
+    /// Scales the stiffness of contact and its loads.
+    fn scale_contact(&mut self, factor: f64) {
         let scale = |v: &mut [f64]| v.iter_mut().for_each(|s| *s *= factor);
         scale(&mut self.system.loads);
-        self.system.support.iter_mut().for_each(|s| scale(&mut s.stiffness));
-        self.system.ridges.iter_mut().for_each(|r| r.weigh(factor));
-        if let Some(l) = &mut self.system.layers {
-            scale(&mut l.stiffness);
-            l.friction_contacts.iter_mut().for_each(|g| g.load *= factor);
+        self.system.body_contact.iter_mut().for_each(|c| scale(&mut c.stiffness));
+        self.system.ridges.iter_mut().for_each(|r| r.scale(factor));
+        if let Some(c) = &mut self.system.self_contact {
+            scale(&mut c.stiffness);
+            c.friction_contacts.iter_mut().for_each(|f| f.load *= factor);
         }
     }
 
-    /// How many nodes it has.
+    /// The number of its nodes.
     pub(crate) fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Puts places and what the part has learnt of contacts back into the whole.
+    /// Writes positions and the state of contacts back into the whole system.
     pub(crate) fn put_back(mut self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
-        if self.bundle != 1.0 {
-            self.weigh(self.bundle);
+        if self.multiplicity != 1.0 {
+            self.scale_contact(self.multiplicity);
         }
         put(&self.nodes, x, whole);
         put(&self.nodes, &self.system.anchors, &mut system.anchors);
         put(&self.nodes, &self.system.loads, &mut system.loads);
         put(&self.nodes, &self.system.slides, &mut system.slides);
-        if !system.seen.is_empty() && !self.system.seen.is_empty() {
-            put(&self.nodes, &self.system.seen, &mut system.seen);
+        if !system.distance_cache.is_empty() && !self.system.distance_cache.is_empty() {
+            put(&self.nodes, &self.system.distance_cache, &mut system.distance_cache);
         }
-        if let (Some(from), Some(to)) = (&self.system.support, &mut system.support) {
+        if let (Some(from), Some(to)) = (&self.system.body_contact, &mut system.body_contact) {
             put(&self.nodes, &from.offsets, &mut to.offsets);
             put(&self.nodes, &from.stiffness, &mut to.stiffness);
         }
-        if let (Some(from), Some(to)) = (&self.system.layers, &mut system.layers) {
-            let grip = |g: &FrictionContact| FrictionContact {
-                nodes: g.nodes.map(|i| self.nodes[i as usize]),
-                ..*g
+        if let (Some(from), Some(to)) = (&self.system.self_contact, &mut system.self_contact) {
+            let whole = |c: &FrictionContact| FrictionContact {
+                nodes: c.nodes.map(|i| self.nodes[i as usize]),
+                ..*c
             };
-            to.take_over(|g| self.cut.touches(&g.nodes), from.friction_contacts.iter().map(grip));
+            to.replace_friction(|c| self.cut.touches(&c.nodes), from.friction_contacts.iter().map(whole));
         }
         if let (Some(from), Some(to)) = (&self.system.ridges, &mut system.ridges) {
-            to.learn(&self.cut, &self.nodes, from);
+            to.merge(&self.cut, &self.nodes, from);
         }
-        system.elastic.learn(&self.cut, &self.system.elastic);
+        system.elastic.merge(&self.cut, &self.system.elastic);
     }
 }
 
@@ -137,8 +137,8 @@ fn put<T: Clone>(nodes: &[u32], from: &[T], to: &mut [T]) {
 }
 
 fn cut_out<'a>(system: &System<'a>, cut: &Subset, nodes: &[u32]) -> System<'a> {
-    let asleep = |&i: &u32| system.pinned[i as usize] || !cut.active()[i as usize];
-    let thread = |t: &SeamForce| SeamForce { nodes: cut.renumbered(t.nodes), ..*t };
+    let is_pinned = |&i: &u32| system.pinned[i as usize] || !cut.active()[i as usize];
+    let seam_force = |t: &SeamForce| SeamForce { nodes: cut.renumbered(t.nodes), ..*t };
     System {
         elastic: system.elastic.part(cut),
         masses: pick(nodes, &system.masses),
@@ -149,22 +149,22 @@ fn cut_out<'a>(system: &System<'a>, cut: &Subset, nodes: &[u32]) -> System<'a> {
             groups: pick(nodes, &h.groups),
             ..*h
         }),
-        pinned: nodes.iter().map(asleep).collect(),
-        threads: system.threads.iter().filter(|t| cut.touches(&t.nodes)).map(thread).collect(),
-        support: system.support.as_ref().map(|s| support(s, cut, nodes)),
-        ridges: system.ridges.as_ref().map(|r| r.part(cut, nodes)),
-        layers: system.layers.as_ref().map(|l| layers(l, cut, nodes)),
+        pinned: nodes.iter().map(is_pinned).collect(),
+        seam_forces: system.seam_forces.iter().filter(|t| cut.touches(&t.nodes)).map(seam_force).collect(),
+        body_contact: system.body_contact.as_ref().map(|c| body_contact(c, cut, nodes)),
+        ridges: system.ridges.as_ref().map(|r| r.subset(cut, nodes)),
+        self_contact: system.self_contact.as_ref().map(|c| self_contact(c, cut, nodes)),
         touches: Vec::new(),
         anchors: pick(nodes, &system.anchors),
         slides: pick(nodes, &system.slides),
         loads: pick(nodes, &system.loads),
         brakes: vec![],
-        pulls: Vec::new(),
-        seen: pick(nodes, &system.seen),
+        targets: Vec::new(),
+        distance_cache: pick(nodes, &system.distance_cache),
     }
 }
 
-fn support<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> BodyContact<'a> {
+fn body_contact<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> BodyContact<'a> {
     let edges = whole.edges.iter().filter(|(e, _)| cut.touches(e) && cut.has_all(e));
     BodyContact {
         body: whole.body,
@@ -173,37 +173,37 @@ fn support<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> BodyCont
         offset: whole.offset,
         depth: whole.depth,
         edges: edges.map(|(e, l)| (cut.renumbered(*e), *l)).collect(),
-        clear: whole.clear,
-        grows: whole.grows,
-        hard: whole.hard,
-        passes: whole.passes,
+        keeps_edges_out: whole.keeps_edges_out,
+        grows_offsets: whole.grows_offsets,
+        stiffens_inside: whole.stiffens_inside,
+        lets_through: whole.lets_through,
         stiffness: pick(nodes, &whole.stiffness),
-        pressed: Vec::new(),
+        overloaded: Vec::new(),
         #[cfg(toile_without = "body")]
         never: whole.never,
     }
 }
 
-fn layers(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
+fn self_contact(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
     let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
-    let grip = |g: &FrictionContact| FrictionContact { nodes: cut.renumbered(g.nodes), ..*g };
+    let friction = |c: &FrictionContact| FrictionContact { nodes: cut.renumbered(c.nodes), ..*c };
     SelfContact {
         #[cfg(toile_without = "self_contact")]
         never: whole.never,
         thickness: whole.thickness,
         edge: whole.edge,
-        crowded: whole.crowded,
+        stacked: whole.stacked,
         stiffness: pick(nodes, &whole.stiffness),
         order: pick(nodes, &whole.order),
         corners: pick(nodes, &whole.corners),
         friction: pick(nodes, &whole.friction),
-        away: pick(nodes, &whole.away),
-        // A grip outlives its pair by the step that parts them.
+        disabled_friction: pick(nodes, &whole.disabled_friction),
+        // Friction outlives its pair by one step.
         friction_contacts: whole
             .friction_contacts
             .iter()
-            .filter(|g| cut.touches(&g.nodes) && cut.has_all(&g.nodes))
-            .map(grip)
+            .filter(|c| cut.touches(&c.nodes) && cut.has_all(&c.nodes))
+            .map(friction)
             .collect(),
         pairs: whole.pairs.iter().filter(|p| cut.touches(&p.nodes)).map(pair).collect(),
         held: whole
@@ -211,8 +211,8 @@ fn layers(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
             .as_ref()
             .map(|h| sorted(h.iter().filter(|p| cut.touches(&p.nodes) && cut.has_all(&p.nodes)).map(pair))),
         contacts: Vec::new(),
-        tangles: Vec::new(),
-        tangled: Vec::new(),
+        intersections: Vec::new(),
+        intersecting: Vec::new(),
     }
 }
 

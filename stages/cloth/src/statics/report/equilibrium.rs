@@ -1,4 +1,4 @@
-//! What the static solver reports.
+//! The result and the progress of the static solver.
 
 use crate::contact::friction::FrictionContact;
 use crate::statics::newton::state::Outcome;
@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 type Vec3 = Vector3<f64>;
 
-/// What one level did.
+/// The run of one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelReport {
     /// Its nodes.
@@ -17,48 +17,47 @@ pub struct LevelReport {
     pub sewing: bool,
     /// The widest seam that is still open, m; 0 where none is.
     pub gap: f64,
-    /// Which of how many meshes it is, from the first on, counted from 1.
+    /// The index of the level, counted from 1 for the coarsest, and how many levels there are.
     pub pass: [usize; 2],
-    /// How it ended.
+    /// Its last outcome.
     pub outcome: Outcome,
     /// Wall time, s.
     pub seconds: f64,
 }
 
-/// A garment at rest.
+/// An equilibrium.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
     /// Position of every vertex of the scene, m.
     pub positions: Vec<Vec3>,
-    /// How the finest level ended.
+    /// The outcome of the finest level.
     pub outcome: Outcome,
-    /// Greatest force left on a node, N.
+    /// Greatest residual force on a node, N.
     pub residual: f64,
-    /// Where that is, and what the cloth meets there.
+    /// The node with that force, and what it is in contact with.
     pub unbalanced: Unbalanced,
-    /// How far friction holds each vertex back, m: what [`Live`](crate::statics::drive::live::Live)
-    /// goes on from.
+    /// Tangential displacement of each vertex on the body, m, for
+    /// [`Live`](crate::statics::drive::live::Live).
     pub slides: Vec<Vec3>,
-    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment: what
-    /// `Live` goes on from.
+    /// Angles of bending hysteresis, by hinges of the sewn garment, for `Live`.
     pub folds: Vec<f64>,
-    /// Friction of every contact of cloth with cloth, by sewn points: what `Live` goes on from.
+    /// Friction of every contact of cloth with cloth, by sewn points, for `Live`.
     pub friction_contacts: Vec<FrictionContact>,
-    /// Distance at which the body begins to press on each vertex, m; none without a body.
+    /// Offset of body contact at each vertex, m; empty without a body.
     pub offsets: Vec<f64>,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
     /// Deepest point inside the body between vertices, m; 0 unless the body has edges sharper than
     /// the mesh can follow.
     pub dip: f64,
-    /// Widest seam when it was joined, m; nothing where there are none.
+    /// Widest gap of the seams when they were joined, m; `None` without seams.
     pub joined_at: Option<f64>,
-    /// Every level, coarse to fine, of the try that came to its end.
+    /// The runs of all levels, coarse to fine, of the last try.
     pub levels: Vec<LevelReport>,
-    /// How often the garment was begun again, each time on a finer coarsest mesh, or once without
-    /// grading.
+    /// How many times the garment was started again, each time with a finer coarsest level, or once
+    /// without bending continuation.
     pub restarts: usize,
 }
 
-/// What a caller learns while solving; it may stop the solver.
+/// Called while solving; it may stop the solver.
 pub type Progress<'p> = dyn FnMut(&LevelReport) -> ControlFlow<()> + 'p;

@@ -1,4 +1,4 @@
-//! Why `StaticEquilibrium` finds no garment at rest, in words that say what to change.
+//! Errors of `StaticEquilibrium`, whose messages say what to change.
 
 use crate::contact::past::Fallen;
 use crate::error::ClothError;
@@ -13,23 +13,23 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// How far, in edges, a seam may stay open because its mesh is too coarse: a polygon of n corners
-/// about a limb is longer than the limb's girth by 3.3 edges over n, and what is folded onto itself
-/// by its seams by an edge or two.
+/// Greatest gap, in edges, that a seam may have because its mesh is too coarse. A polygon of n
+/// corners around a limb is longer than the girth of the limb by 3.3 edges over n, and cloth that
+/// its seams fold onto itself is longer by one or two edges.
 pub(crate) const MOST_EDGES: f64 = 3.0;
 
-/// What is about a vertex whose step has no solution.
+/// Why the step of a vertex has no solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Unsolvable {
     /// It belongs to no triangle.
     #[error("it belongs to no triangle; remove it, or give it one")]
     Loose,
-    /// Its place is no finite number.
+    /// Its position is not finite.
     #[error(
         "its place is no finite number any more; look for stiffness, density and lengths beyond those of cloth"
     )]
     Lost,
-    /// Its triangles have no area where they start.
+    /// Its triangles have no area at the start.
     #[error("its triangles have no area where they start; lay the panel out flat")]
     Flat,
     /// The forces on it differ too much in size.
@@ -39,7 +39,7 @@ pub enum Unsolvable {
     Apart,
 }
 
-/// Why there is no garment at rest.
+/// Why no equilibrium was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
     /// A fault of the input.
@@ -56,13 +56,13 @@ pub enum StaticsError {
         "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest"
     )]
     Falls,
-    /// What is wrong with the start.
+    /// A fault of the initial positions.
     #[error(transparent)]
     Start(#[from] StartError),
     /// A step that has no solution.
     #[error("no step can be solved at vertex {vertex} of {panel}: {why}")]
     Unsolvable {
-        /// The vertex about which it has none.
+        /// The vertex without one.
         vertex: usize,
         /// Its panel.
         panel: String,
@@ -89,7 +89,7 @@ pub enum StaticsError {
         /// The state carried to the finest level.
         positions: Vec<Vec3>,
     },
-    /// Cloth came through cloth while it was brought to rest.
+    /// Cloth passed through cloth while solving.
     #[error(
         "cloth passes through cloth under its load: {} while solving, and {pairs} pairs cross or lie in each other, one at {}, while {load}",
         both(panels, "came through", "came through"),
@@ -98,14 +98,14 @@ pub enum StaticsError {
     Tangled {
         /// Two panels of them.
         panels: [String; 2],
-        /// How many pairs of an edge and a triangle, or so near that nothing tells their sides.
+        /// The number of crossings and merged pairs.
         pairs: usize,
-        /// Where one is, m.
+        /// The place of one of them, m.
         at: Vec3,
         /// Weight against stiffness.
         load: Load,
     },
-    /// Cloth that passes through cloth at the end.
+    /// Cloth passes through cloth in the final state.
     #[error(
         "{pairs} pairs of an edge and a triangle cross at the end; place the panels more smoothly, or begin on a finer mesh"
     )]
@@ -115,17 +115,17 @@ pub enum StaticsError {
         /// The state.
         state: Box<Equilibrium>,
     },
-    /// Still moving after all steps.
+    /// The cloth still moves after all steps.
     #[error("{}", unrest(state, panel, *wanted))]
     NotAtRest {
         /// The speed that was asked for, m/s.
         wanted: f64,
-        /// The panel with the greatest force left over.
+        /// The panel with the greatest residual force.
         panel: String,
         /// The last state, which has neither crossings nor vertices in the body.
         state: Box<Equilibrium>,
     },
-    /// The budget of time is spent.
+    /// The time limit is reached.
     #[error(
         "out of time after {seconds:.1} s on level {level} of {levels}; allow more time or take a coarser mesh"
     )]
@@ -139,7 +139,7 @@ pub enum StaticsError {
         /// The state carried to the finest level.
         positions: Vec<Vec3>,
     },
-    /// A garment that is to go on has another mesh or other seams.
+    /// A live garment was given another mesh or other seams.
     #[error("the mesh or its seams have changed; solve the scene from its start")]
     Reshaped,
     /// The caller asked to stop.
@@ -148,7 +148,7 @@ pub enum StaticsError {
 }
 
 impl StaticsError {
-    /// How far the cloth has come, where that is known: vertices of the finest level, m.
+    /// The positions of the cloth, where they are known: vertices of the finest level, m.
     #[must_use]
     pub fn so_far(&self) -> Option<&[Vec3]> {
         match self {
@@ -157,7 +157,7 @@ impl StaticsError {
         }
     }
 
-    /// Whether a finer mesh to begin on may help, where this one's edges have a mean length, m.
+    /// Whether a finer coarsest level may help; `edge` is the mean edge length of this one, m.
     pub(crate) fn is_of_a_coarse_mesh(&self, edge: f64) -> bool {
         match self {
             Self::SeamNotClosed { gap, .. } => *gap < MOST_EDGES * edge,

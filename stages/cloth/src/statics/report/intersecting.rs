@@ -1,5 +1,5 @@
-//! What is told of a level that cannot be solved: cloth that came through cloth, or a vertex whose
-//! step has no solution.
+//! Errors of a level that cannot be solved: intersections that were not resolved, or a step without
+//! a solution.
 
 use crate::scene::Scene;
 use crate::statics::levels::mesh_level::Level;
@@ -11,35 +11,35 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Cloth of a level that crosses or lies in itself.
+/// The intersections of a level.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Entangled {
+pub(crate) struct Intersections {
     /// Nodes of the level.
     pub(crate) nodes: usize,
     /// Two panels of it, counted from 1.
     panels: [u32; 2],
     /// How many pairs of features.
     pairs: usize,
-    /// Where one of them is, m.
+    /// The place of one of them, m.
     at: Vec3,
 }
 
-/// The error for cloth of the finest level that came through cloth and did not come free.
-pub(crate) fn tangled(scene: &Scene, gravity: f64, entangled: Entangled) -> StaticsError {
-    let Entangled { panels, pairs, at, .. } = entangled;
+/// The error of intersections of the finest level that were not resolved.
+pub(crate) fn intersecting_error(scene: &Scene, gravity: f64, intersections: Intersections) -> StaticsError {
+    let Intersections { panels, pairs, at, .. } = intersections;
     let panels = panels.map(|p| words::panel(scene, p));
     StaticsError::Tangled { panels, pairs, at, load: Load::of(scene, gravity) }
 }
 
-/// What of a level lies in each other or crosses.
-pub(crate) fn entangled(pieces: &Pieces, level: &Level<'_>) -> Entangled {
-    let groups = level.system.layers.as_ref().map_or_else(Vec::new, |l| l.entangled(&level.x));
+/// The intersections of a level.
+pub(crate) fn intersections_of(pieces: &Pieces, level: &Level<'_>) -> Intersections {
+    let groups = level.system.self_contact.as_ref().map_or_else(Vec::new, |c| c.intersecting_nodes(&level.x));
     let first = groups.first().copied().unwrap_or_default();
     let panel = |node: u32| {
         let vertex = pieces.node.iter().position(|n| *n == node);
         vertex.map_or(0, |v| pieces.panel[v])
     };
-    Entangled {
+    Intersections {
         nodes: level.x.len(),
         panels: [panel(first[0]), panel(first[3])],
         pairs: groups.len().max(1),
@@ -47,7 +47,7 @@ pub(crate) fn entangled(pieces: &Pieces, level: &Level<'_>) -> Entangled {
     }
 }
 
-/// The error for a step that has no solution because of what is about a vertex of the finest level.
+/// The error of a step that has no solution near a vertex of the finest level.
 pub(crate) fn unsolvable(scene: &Scene, vertex: usize, at: &Vec3) -> StaticsError {
     let number = scene.panels.iter().position(|p| p.vertices.contains(&vertex)).map_or(0, |k| k as u32 + 1);
     let mut around = scene.triangles.iter().filter(|t| t.contains(&(vertex as u32))).peekable();

@@ -1,12 +1,12 @@
-//! What a panel has to carry, for words about cloth that cannot be solved.
+//! The load of panels under their own weight, for messages about cloth that cannot be solved.
 
 use crate::scene::Scene;
 use std::fmt;
 
-/// Strain under its own weight above which the cloth's load is named as the cause.
+/// Strain under its own weight above which the load is named as the cause.
 const HEAVY: f64 = 0.1;
 
-/// What a panel has to carry if it hangs at its full length, and what it resists with.
+/// The load of a panel that hangs at its full length, and its stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Load {
     /// Its length along or across the warp, m.
@@ -18,7 +18,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// That of the panel and direction which stretch most under their own weight.
+    /// The load of the panel and direction that stretch most under their own weight.
     pub(crate) fn of(scene: &Scene, gravity: f64) -> Self {
         let of = |k: usize| {
             let (panel, fabric) = (&scene.panels[k], scene.fabric_of(k));
@@ -36,7 +36,7 @@ impl Load {
         (0..scene.panels.len()).flat_map(of).fold(none, more)
     }
 
-    /// Whether the weight is so great for the stiffness that it is the cause of what goes wrong.
+    /// Whether the weight is so great for the stiffness that it is the likely cause of a fault.
     #[must_use]
     pub fn is_heavy(&self) -> bool {
         self.strain() > HEAVY

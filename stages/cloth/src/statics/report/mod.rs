@@ -1,6 +1,6 @@
-//! What is told of a garment: the state of rest, or why there is none.
+//! Reports of the static solver: the equilibrium, or why there is none.
 //!
-//! Depends on all rooms but `drive`.
+//! Depends on all folders but `drive`.
 
 pub(crate) mod equilibrium;
 pub(crate) mod error;

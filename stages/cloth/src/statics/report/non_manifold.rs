@@ -1,11 +1,10 @@
-//! Panels that share more than a seam.
+//! Repairs non-manifold edges that sewing would make.
 //!
-//! Where a mesher cuts the same ear off both panels at a seam (a triangle with two sides on it),
-//! the ears' third sides lie between the same two points of the seam: sewn, four triangles share
-//! one edge, and the sheet is no surface. One panel's edge is flipped there to the ear's tip, as in
-//! Lawson 1977; the vertices stay as they are. Edges along a seam stay, however many sheets it
-//! joins. Cost O(n log n). Limit: an edge that cannot be flipped without turning a triangle over
-//! stays.
+//! Where both panels at a seam have an ear (a triangle with two sides on it) between the same
+//! points of the seam, the third sides of the ears join the same two points. After sewing four
+//! triangles would share that edge. Method: the edge is flipped in one panel (Lawson 1977); the
+//! vertices stay. Edges along a seam stay, however many sheets it joins. Cost: O(n log n). Limit:
+//! an edge stays if its flip would invert a triangle.
 
 use crate::scene::Seam;
 use crate::statics::levels::coarsen::signed_quality;
@@ -26,8 +25,8 @@ struct Side {
 type Flipped = [(usize, [u32; 3]); 2];
 
 impl Pieces {
-    /// Flips edges that more than two triangles would share once the seams are joined, but for
-    /// those along a seam.
+    /// Flips edges that more than two triangles would share once the seams are joined, except those
+    /// along a seam.
     pub(crate) fn part_ears(&mut self, seams: &[Seam]) {
         let found = self.non_manifold_edges();
         if found.is_empty() {
@@ -76,8 +75,7 @@ impl Pieces {
         groups.map(|g| g.iter().map(|(_, s)| *s).collect()).collect()
     }
 
-    /// The worst quality of the two triangles that flipping an edge of two triangles makes, and
-    /// these.
+    /// The two triangles after a flip of an edge, and the worse of their qualities.
     fn flip(&self, sides: &[Side]) -> Option<(f64, Flipped)> {
         let &[s, t] = sides else { return None };
         let is_there =

@@ -3,7 +3,7 @@
 use crate::statics::report::equilibrium::Equilibrium;
 use crate::statics::report::unbalanced::{Meets, Unbalanced};
 
-/// Why a state is not at rest, in words; `panel` is that of the place with the greatest force, and
+/// Why a state is not at rest, in words. `panel` is the panel with the greatest residual force, and
 /// `wanted` the speed of rest, m/s.
 #[must_use]
 pub fn unrest(state: &Equilibrium, panel: &str, wanted: f64) -> String {

@@ -1,14 +1,13 @@
-//! What is wrong with where a scene starts, told before anything is solved.
+//! Checks of the initial positions of a scene, before anything is solved.
 //!
-//! A fault of the start that is found by solving is found late, and told as another: panels that
-//! lie in each other as cloth that does not come free, a seam that is sewn the wrong way round as
-//! one whose panels are cut too small. Looked at are vertices in the body, seams (`seams`: pins
-//! that they would bring together, pairs that run against each other), and cloth in cloth
-//! (`touching`).
+//! A fault of the start that only shows while solving is reported late and as another one: panels
+//! that lie in each other as intersections that cannot be resolved, a reversed seam as panels that
+//! are too small. So these are checked: vertices in the body, seams (`seams`: pins that they would
+//! bring together, reversed pairs), and cloth that lies in cloth (`touching`).
 //!
-//! Cost: a distance to the body for each vertex and a search for neighbours, O(n log n). Limit:
-//! cloth that crosses on a fine mesh alone is not refused, for the garment starts on a coarser one
-//! that is free of crossings.
+//! Cost: one distance to the body per vertex and a search for neighbours, O(n log n). Limit:
+//! crossings on a fine mesh alone are not refused, for the garment starts on a coarser one without
+//! crossings.
 
 mod seams;
 mod touching;
@@ -18,7 +17,7 @@ pub use seams::surely_reversed;
 pub(crate) use touching::crossings_at_start;
 pub(crate) use touching::{crossing, crossings};
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::contact::start::{DEEPEST, clear_start};
 use crate::error::ClothError;
 use crate::scene::Scene;
@@ -31,7 +30,7 @@ use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 
-/// What is wrong with a start.
+/// A fault of the initial positions.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StartError {
     /// Vertices start inside the body, too deep to be pushed out.
@@ -58,14 +57,14 @@ pub enum StartError {
     Crossing {
         /// The two panels that cross most.
         panels: [String; 2],
-        /// How often these do.
+        /// How many crossings these have.
         pairs: usize,
         /// Where one of the crossings is, m.
         at: Vec3,
         /// How many other pairs of panels cross.
         more: usize,
     },
-    /// Cloth that lies in cloth, so that nothing tells which of the two is above.
+    /// Cloth that lies in cloth, so that their sides cannot be told apart.
     #[error(
         "{} at the start: {:.0} % of {} is nearer than {:.3} mm, one place is {}{}; lay them {:.1} mm apart, which is the thickness of \
          the cloth",
@@ -74,11 +73,11 @@ pub enum StartError {
     Lying {
         /// The panel and what it lies in.
         panels: [String; 2],
-        /// The part of its area that does.
+        /// The share of its area that does.
         share: f64,
-        /// The distance below which cloth lies in cloth, m.
+        /// The distance below which cloth counts as lying in cloth, m.
         within: f64,
-        /// The distance at which cloth is held off cloth, m.
+        /// The thickness of self-contact, m.
         thickness: f64,
         /// One place of it, m.
         at: Vec3,
@@ -94,7 +93,7 @@ pub enum StartError {
     Squeezed {
         /// The panel.
         panel: String,
-        /// The part of its area that is.
+        /// The share of its area that is.
         share: f64,
         /// One place of it, m.
         at: Vec3,
@@ -142,36 +141,36 @@ fn named(seams: &[String]) -> String {
     format!("{} {}", if seams.len() == 1 { "seam" } else { "seams" }, list(seams))
 }
 
-/// Where the vertices start, those a little inside the body moved out.
+/// The initial positions, with vertices a little inside the body moved out.
 ///
 /// # Errors
-/// [`StartError`], or what is wrong with the mesh.
+/// [`StartError`], or a fault of the mesh.
 pub(crate) fn check<E: From<StartError> + From<ClothError>>(
     scene: &Scene,
-    skin: Option<&dyn CollisionSurface>,
+    surface: Option<&dyn CollisionSurface>,
     join_gap: f64,
 ) -> Result<Vec<Vec3>, E> {
     seams::check_pins(scene, join_gap)?;
-    let (start, is_worn) = cleared(scene, skin)?;
+    let (start, is_worn) = cleared(scene, surface)?;
     if is_worn {
         seams::check_order(scene, &start)?;
     }
     Ok(start)
 }
 
-/// Where the vertices start, those inside the body moved out to its nearest point, however deep
-/// they are.
+/// The initial positions, with vertices inside the body moved out to its nearest point, at any
+/// depth.
 ///
 /// # Errors
-/// [`StartError::PinnedApart`]: what seams cannot bring together whatever lies between.
+/// [`StartError::PinnedApart`]: pins that seams can never bring together.
 pub(crate) fn moved_out<E: From<StartError>>(
     scene: &Scene,
-    skin: Option<&dyn CollisionSurface>,
+    surface: Option<&dyn CollisionSurface>,
     join_gap: f64,
 ) -> Result<Vec<Vec3>, E> {
     seams::check_pins(scene, join_gap)?;
-    let Some(skin) = skin else { return Ok(scene.positions.clone()) };
-    let near = skin.nearest(&scene.positions, &vec![f64::INFINITY; scene.positions.len()]);
+    let Some(surface) = surface else { return Ok(scene.positions.clone()) };
+    let near = surface.nearest(&scene.positions, &vec![f64::INFINITY; scene.positions.len()]);
     let out = |(p, n): (&Vec3, Option<Nearest>)| match n {
         Some(n) if n.distance < scene.material.thickness => n.point + n.normal * scene.material.thickness,
         _ => *p,
@@ -182,7 +181,7 @@ pub(crate) fn moved_out<E: From<StartError>>(
 /// Refuses cloth that lies in cloth where it starts.
 ///
 /// # Errors
-/// [`StartError::Lying`], [`StartError::Squeezed`], or what is wrong with the mesh.
+/// [`StartError::Lying`], [`StartError::Squeezed`], or a fault of the mesh.
 pub(crate) fn check_lying<E: From<StartError> + From<ClothError>>(
     scene: &Scene,
     pieces: &Pieces,
@@ -199,11 +198,11 @@ pub(crate) fn check_lying<E: From<StartError> + From<ClothError>>(
     Ok(touching::check_lying(scene, pieces, &tree, start, thickness)?)
 }
 
-/// The start with vertices that lie a little inside the body moved out, and whether there is a
+/// The initial positions, with vertices a little inside the body moved out, and whether there is a
 /// body.
-fn cleared(scene: &Scene, skin: Option<&dyn CollisionSurface>) -> Result<(Vec<Vec3>, bool), StartError> {
-    let Some(skin) = skin else { return Ok((scene.positions.clone(), false)) };
-    clear_start(&scene.positions, skin, scene.material.thickness).map_err(|sunk| {
+fn cleared(scene: &Scene, surface: Option<&dyn CollisionSurface>) -> Result<(Vec<Vec3>, bool), StartError> {
+    let Some(surface) = surface else { return Ok((scene.positions.clone(), false)) };
+    clear_start(&scene.positions, surface, scene.material.thickness).map_err(|sunk| {
         let number = scene.panels.iter().position(|p| p.vertices.contains(&sunk.deepest));
         StartError::InBody {
             vertices: sunk.vertices,

@@ -1,4 +1,4 @@
-//! The place with the greatest force left over, and what the cloth meets there.
+//! The node with the greatest residual force, and what it is in contact with. Cost: O(n).
 
 use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::Pieces;
@@ -6,18 +6,18 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// The place with the greatest force left over.
+/// The node with the greatest residual force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unbalanced {
     /// The vertex of the scene.
     pub vertex: u32,
     /// The force, N.
     pub force: f64,
-    /// What the cloth meets there.
+    /// What the cloth is in contact with there.
     pub meets: Meets,
 }
 
-/// What cloth meets at a place.
+/// What cloth is in contact with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Meets {
     /// Other cloth.
@@ -28,7 +28,7 @@ pub enum Meets {
     Nothing,
 }
 
-/// The greatest force that a gradient leaves over.
+/// The greatest residual force of a gradient.
 pub(crate) fn unbalanced(system: &System<'_>, gradient: &[Vec3], pieces: &Pieces) -> Unbalanced {
     let mut worst = (0, 0.0);
     for (n, force) in gradient.iter().map(Vec3::norm).enumerate() {
@@ -38,7 +38,7 @@ pub(crate) fn unbalanced(system: &System<'_>, gradient: &[Vec3], pieces: &Pieces
     }
     let (node, force) = worst;
     let meets_cloth =
-        system.layers.as_ref().is_some_and(|l| l.contacts.iter().any(|c| c.nodes.contains(&node)));
+        system.self_contact.as_ref().is_some_and(|l| l.contacts.iter().any(|c| c.nodes.contains(&node)));
     let meets_body = system.touches.iter().any(|t| t.node == node);
     let meets = match (meets_cloth, meets_body) {
         (true, _) => Meets::Cloth,

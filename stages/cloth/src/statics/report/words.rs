@@ -1,9 +1,9 @@
-//! Where in a garment something is, in words: panels by their names, places in metres.
+//! Places in a garment, in words: panels by their names, positions in metres.
 
 use crate::scene::Scene;
 use nalgebra::Vector3;
 
-/// What is called what: the panel that is counted from 1, or 0 for a vertex of none.
+/// The name of a panel, counted from 1, or of a vertex without a panel for 0.
 pub(crate) fn panel(scene: &Scene, number: u32) -> String {
     let panel = (number as usize).checked_sub(1).and_then(|k| scene.panels.get(k));
     panel.map_or_else(|| "cloth of no panel".into(), |p| format!("panel '{}'", p.name))

@@ -70,21 +70,21 @@ fn the_couple_is_what_stiffness_makes_of_its_curvature() {
     // A diagonal of a square bends over half of the diagonal.
     let span = EDGE / 2.0_f64.sqrt();
     assert!((hold.couple / hold.fold.stiffness / (RATIO * span) - 1.0).abs() < 1e-9);
-    assert!((hold.soft / (SLIP_TOLERANCE * RATIO * span) - 1.0).abs() < 1e-9);
+    assert!((hold.tolerance / (SLIP_TOLERANCE * RATIO * span) - 1.0).abs() < 1e-9);
 }
 
 #[test]
-fn a_fold_that_turned_and_was_dragged_along_stays_open_when_it_is_let_go() {
+fn a_fold_that_turned_and_was_dragged_along_stays_open_when_it_is_released() {
     let (mut elastic, uv) = square();
     elastic.0.hold(&folded(&uv, 0.0));
     elastic.0.drag(&folded(&uv, 1.0));
-    let soft = elastic.0.holds[0].soft;
+    let tolerance = elastic.0.holds[0].tolerance;
     assert!(
         elastic.0.held[0] > 0.5 && (moment(&elastic, &uv, 1.0) / elastic.0.holds[0].couple - 0.5).abs() < 0.1
     );
     // What has hardly turned is not dragged.
     let held = elastic.0.held.clone();
-    elastic.0.drag(&folded(&uv, 1.0 - 0.5 * soft));
+    elastic.0.drag(&folded(&uv, 1.0 - 0.5 * tolerance));
     assert_eq!(elastic.0.held, held);
 }
 

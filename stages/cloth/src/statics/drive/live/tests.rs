@@ -59,10 +59,10 @@ fn a_skirt_follows_its_fabric_and_comes_to_rest() {
     let scene = generate::tube(12, 14);
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
-    let wearer = Collider { skin: &body, friction: b.friction };
+    let collider = Collider { surface: &body, friction: b.friction };
     let cloth = scene.material.clone();
     let mut live =
-        Live::new(StaticEquilibrium::default(), scene.clone(), Some(wearer), &fresh(&scene)).unwrap();
+        Live::new(StaticEquilibrium::default(), scene.clone(), Some(collider), &fresh(&scene)).unwrap();
     let mut residuals = Vec::new();
     // A second of a slider's way, a state every thirtieth.
     for k in 1..=30 {

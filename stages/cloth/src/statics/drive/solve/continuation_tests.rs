@@ -1,4 +1,4 @@
-//! Bending that is let go by steps: what it is for, and what it must leave alone.
+//! Bending continuation: what it improves, and what it must not change.
 #![allow(clippy::unwrap_used)]
 use super::tests::{crossings, deepest, strains};
 use super::*;
@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 fn graded(scene: &Scene) -> Equilibrium {
-    let rest = StaticEquilibrium { bending_continuation: true, ..StaticEquilibrium::default() };
-    match rest.solve(scene, &mut |_| ControlFlow::Continue(())) {
+    let settings = StaticEquilibrium { bending_continuation: true, ..StaticEquilibrium::default() };
+    match settings.solve(scene, &mut |_| ControlFlow::Continue(())) {
         Err(StaticsError::NotAtRest { state, .. }) => *state,
         other => other.unwrap(),
     }
@@ -76,18 +76,18 @@ fn cloth_without_bending_or_weight_is_solved_straight_away() {
 #[test]
 fn out_of_time_tells_the_mesh_whatever_the_state_of_stiffness() {
     let scene = generate::hang(24);
-    let rest = StaticEquilibrium {
+    let settings = StaticEquilibrium {
         bending_continuation: true,
         budget: Duration::from_secs(1),
         ..StaticEquilibrium::default()
     };
     let mut progress = |level: &LevelReport| {
         if level.nodes == scene.rest.len() {
-            std::thread::sleep(rest.budget);
+            std::thread::sleep(settings.budget);
         }
         ControlFlow::Continue(())
     };
-    let error = rest.solve(&scene, &mut progress).unwrap_err();
+    let error = settings.solve(&scene, &mut progress).unwrap_err();
     let told = |level: usize, levels: usize| (1..=levels).contains(&level);
     assert!(
         matches!(&error, StaticsError::Timeout { level, levels, positions, .. }

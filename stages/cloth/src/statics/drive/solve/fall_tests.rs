@@ -1,4 +1,4 @@
-//! A garment that misses its body, or slides off it, is told as soon as it is certain; one that
+//! A garment that misses its body, or slides off it, is reported as soon as it is certain; one that
 //! slides a little is not.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;

@@ -1,4 +1,4 @@
-//! Cloth whose yarns rub on each other keeps a part of its folds.
+//! Cloth with bending hysteresis keeps a part of its folds.
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::energy::Vec3;
@@ -35,11 +35,11 @@ fn bent(layout: Layout, along: usize, ratio: f64) -> Scene {
     scene
 }
 
-/// The curvature that is left when the strip is let go, by the turn between its ends' edges, 1/m.
+/// The curvature that is left when the strip is released, by the turn between its ends' edges, 1/m.
 fn left(layout: Layout, along: usize, ratio: f64) -> f64 {
     let scene = bent(layout, along, ratio);
-    let rest = StaticEquilibrium { speed: 1e-5, ..StaticEquilibrium::default() };
-    let state = rest.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let settings = StaticEquilibrium { speed: 1e-5, ..StaticEquilibrium::default() };
+    let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     let of_row = |low: f64, high: f64| {
         let row: Vec<usize> =
             (0..scene.rest.len()).filter(|&v| (low..=high).contains(&scene.rest[v].y)).collect();
@@ -74,10 +74,10 @@ fn a_bent_strip_springs_back_to_a_curvature_that_its_friction_holds() {
 #[test]
 fn a_followed_strip_keeps_its_folds() {
     let scene = bent(Layout::Equilateral, 20, 20.0);
-    let rest = StaticEquilibrium { speed: 1e-5, ..StaticEquilibrium::default() };
-    let state = rest.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let settings = StaticEquilibrium { speed: 1e-5, ..StaticEquilibrium::default() };
+    let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     assert!(!state.folds.is_empty());
-    let mut live = crate::statics::drive::live::Live::new(rest, scene.clone(), None, &state).unwrap();
+    let mut live = crate::statics::drive::live::Live::new(settings, scene.clone(), None, &state).unwrap();
     let again = live.settle(&mut |_| ControlFlow::Continue(())).unwrap();
     let moved = state.positions.iter().zip(&again.positions).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(moved < 1e-4, "{moved}");
@@ -90,8 +90,8 @@ fn what_friction_held_holds_again() {
     let mut scene = crate::scene::generate::tube(34, 12);
     scene.material.bending_friction_warp = 3e-4;
     scene.material.bending_friction_weft = 3e-4;
-    let solve = |rest: StaticEquilibrium, scene: &Scene| {
-        rest.solve(scene, &mut |_| ControlFlow::Continue(())).unwrap()
+    let solve = |settings: StaticEquilibrium, scene: &Scene| {
+        settings.solve(scene, &mut |_| ControlFlow::Continue(())).unwrap()
     };
     let first = solve(StaticEquilibrium::default(), &scene);
     scene.positions.clone_from(&first.positions);
@@ -116,9 +116,9 @@ fn from_here_a_garment_at_rest_stays_where_it_is() {
     scene.material.bending_friction_warp = 3e-4;
     scene.material.bending_friction_weft = 3e-4;
     let mut steps = 0;
-    let mut solve = |rest: StaticEquilibrium, scene: &Scene| {
+    let mut solve = |settings: StaticEquilibrium, scene: &Scene| {
         steps = 0;
-        let state = rest.solve(scene, &mut |_| {
+        let state = settings.solve(scene, &mut |_| {
             steps += 1;
             ControlFlow::Continue(())
         });

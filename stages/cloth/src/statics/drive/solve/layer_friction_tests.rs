@@ -16,8 +16,8 @@ fn tilted(tangent: f64) -> Rotation3<f64> {
 
 /// Sheets on each other on a slope of that tangent, each with its friction; the lowest is larger
 /// and lies on a rough plate.
-fn piled(layout: Layout, tangent: f64, frictions: &[f64]) -> Scene {
-    let mut scene = Scene::new("pile", generate::cloth());
+fn stacked(layout: Layout, tangent: f64, frictions: &[f64]) -> Scene {
+    let mut scene = Scene::new("stack", generate::cloth());
     for (k, friction) in frictions.iter().enumerate() {
         let size = if k == 0 { 0.3 } else { 0.15 };
         let mesh = Rectangle::new(layout, size, size, if k == 0 { 12 } else { 7 });
@@ -36,8 +36,8 @@ fn piled(layout: Layout, tangent: f64, frictions: &[f64]) -> Scene {
 /// How far the sheet `k` ends from its start, at most, m; whether all came to rest.
 fn slid(scene: &Scene, k: usize) -> (f64, bool) {
     // A sheet 2 % above its angle gains but 0.6 mm/s in the step that proves rest.
-    let rest = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
-    let (state, rests) = match rest.solve(scene, &mut |_| ControlFlow::Continue(())) {
+    let settings = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
+    let (state, rests) = match settings.solve(scene, &mut |_| ControlFlow::Continue(())) {
         Ok(state) => (state, true),
         Err(StaticsError::NotAtRest { state, .. }) => (*state, false),
         Err(StaticsError::FallsPast(_)) => return (f64::INFINITY, false),
@@ -52,11 +52,11 @@ fn slid(scene: &Scene, k: usize) -> (f64, bool) {
 fn a_sheet_on_a_sheet_sticks_below_its_angle_and_slips_above() {
     for layout in [Layout::Irregular(3), Layout::OneDiagonal] {
         for share in [0.5, 0.9, 0.98] {
-            let (way, rests) = slid(&piled(layout, 0.3 * share, &[0.3, 0.3]), 1);
+            let (way, rests) = slid(&stacked(layout, 0.3 * share, &[0.3, 0.3]), 1);
             assert!(rests && way < 2e-3, "{layout:?} {share}: {way} {rests}");
         }
         for share in [1.02, 1.2] {
-            let (way, rests) = slid(&piled(layout, 0.3 * share, &[0.3, 0.3]), 1);
+            let (way, rests) = slid(&stacked(layout, 0.3 * share, &[0.3, 0.3]), 1);
             assert!(!rests && way > 0.04, "{layout:?} {share}: {way} {rests}");
         }
     }
@@ -65,22 +65,22 @@ fn a_sheet_on_a_sheet_sticks_below_its_angle_and_slips_above() {
 #[test]
 fn in_a_stack_the_smooth_sheet_slides_off_the_others() {
     // The mean of two frictions counts: 0.4 below, 0.25 on top.
-    let scene = piled(Layout::Irregular(3), 0.3, &[0.4, 0.4, 0.1]);
+    let scene = stacked(Layout::Irregular(3), 0.3, &[0.4, 0.4, 0.1]);
     let ((middle, _), (top, rests)) = (slid(&scene, 1), slid(&scene, 2));
     assert!(middle < 2e-3 && top > 0.04 && !rests, "{middle} {top} {rests}");
-    let (top, rests) = slid(&piled(Layout::Irregular(3), 0.24, &[0.4, 0.4, 0.1]), 2);
+    let (top, rests) = slid(&stacked(Layout::Irregular(3), 0.24, &[0.4, 0.4, 0.1]), 2);
     assert!(top < 2e-3 && rests, "{top} {rests}");
 }
 
 #[test]
 fn without_friction_a_sheet_slides_down_the_least_slope() {
-    let (way, rests) = slid(&piled(Layout::Irregular(3), 0.02, &[0.0, 0.0]), 1);
+    let (way, rests) = slid(&stacked(Layout::Irregular(3), 0.02, &[0.0, 0.0]), 1);
     assert!(way > 0.04, "{way} {rests}");
 }
 
 #[test]
 fn a_stack_that_holds_has_the_same_bits_on_any_number_of_threads() {
-    let scene = piled(Layout::Irregular(3), 0.2, &[0.4, 0.4, 0.4]);
+    let scene = stacked(Layout::Irregular(3), 0.2, &[0.4, 0.4, 0.4]);
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| roughly(&scene).positions)
@@ -91,20 +91,20 @@ fn a_stack_that_holds_has_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn a_garment_that_goes_on_remembers_what_holds_it() {
     use crate::statics::drive::live::Live;
-    let scene = piled(Layout::Irregular(3), 0.27, &[0.3, 0.3]);
+    let scene = stacked(Layout::Irregular(3), 0.27, &[0.3, 0.3]);
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
-    let wearer = Collider { skin: &body, friction: b.friction };
-    let rest = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
-    let state = rest.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let collider = Collider { surface: &body, friction: b.friction };
+    let settings = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
+    let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     let moved = |state: &Equilibrium| {
-        let mut live = Live::new(rest, scene.clone(), Some(wearer), state).unwrap();
+        let mut live = Live::new(settings, scene.clone(), Some(collider), state).unwrap();
         let next = live.settle(&mut |_| ControlFlow::Continue(())).unwrap();
         let ways = next.positions.iter().zip(&state.positions).map(|(a, b)| (a - b).norm());
         ways.fold(0.0, f64::max)
     };
-    let forgetful = Equilibrium { friction_contacts: vec![], ..state.clone() };
-    let (kept, lost) = (moved(&state), moved(&forgetful));
+    let continuation_options = Equilibrium { friction_contacts: vec![], ..state.clone() };
+    let (kept, lost) = (moved(&state), moved(&continuation_options));
     assert!(kept < 2e-5 && lost > 1e-4, "{kept} {lost}");
 }
 
@@ -114,7 +114,7 @@ fn edges_that_end_on_each_other_come_to_rest() {
     // rounding edges meet there or do not.
     for k in 0..24 {
         let share = 0.5 + 0.02 * f64::from(k);
-        let (way, rests) = slid(&piled(Layout::OneDiagonal, 0.3 * share, &[0.3, 0.3]), 1);
+        let (way, rests) = slid(&stacked(Layout::OneDiagonal, 0.3 * share, &[0.3, 0.3]), 1);
         assert!(rests && way < 2e-3, "{share}: {way} {rests}");
     }
 }

@@ -1,4 +1,4 @@
-//! What sewing does beside plain seams, looked at in the result.
+//! Sewing beside plain seams: gathers, darts, pleats, bands and folds.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
@@ -296,12 +296,12 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
         Body::new(body.vertices.iter().map(down).collect(), &body.triangles)
     };
     let (low, middle, body) = (solid(0.06), solid(0.03), solid(0.0));
-    let wearer = Collider { skin: &body, friction: scene.body.as_ref().unwrap().friction };
+    let collider = Collider { surface: &body, friction: scene.body.as_ref().unwrap().friction };
     let through =
         StaticEquilibrium { bending_continuation: true, sew_through: true, ..StaticEquilibrium::default() };
     let solve = |around: &[&dyn CollisionSurface]| {
         through
-            .solve_around(&scene, Some(wearer), around, &Stopper::default(), &mut |_| {
+            .solve_around(&scene, Some(collider), around, &Stopper::default(), &mut |_| {
                 ControlFlow::Continue(())
             })
             .unwrap()
@@ -321,11 +321,11 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
 fn a_share_of_the_vertices_may_still_move() {
     // A small mesh: on large ones both runs go other ways from the coarser levels on.
     let scene = generate::drape(10);
-    let steps = |rest: StaticEquilibrium| {
+    let steps = |settings: StaticEquilibrium| {
         let state =
-            rest.solve(&scene, &mut |_| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
-        assert!(state.outcome.non_static <= rest.non_static && state.outcome.speed < rest.speed);
-        if rest.non_static == 0.0 {
+            settings.solve(&scene, &mut |_| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
+        assert!(state.outcome.non_static <= settings.non_static && state.outcome.speed < settings.speed);
+        if settings.non_static == 0.0 {
             assert_eq!(state.outcome.speed, state.outcome.fastest);
         }
         state.levels.iter().map(|l| l.outcome.steps).sum::<usize>()

@@ -1,9 +1,9 @@
-//! The two halves of a solution with a factor at hand: up the tree of fronts, and down again.
+//! Forward and backward substitution with a multifrontal factor: up the tree of fronts, and down.
 //!
-//! The numbers are kept in the order of elimination, where all below a front lies together:
-//! branches share nothing, so they run side by side. What a branch does to the nodes above it goes
-//! up as a vector over its border. Cost: each number of the factor is read twice, so the limit is
-//! memory.
+//! Values are stored in the order of elimination, in which all nodes below a front are consecutive.
+//! Branches share nothing, so they run in parallel. The contribution of a branch to the nodes above
+//! it is a vector over its border. Cost: each value of the factor is read twice, so the limit is
+//! memory bandwidth.
 
 use super::{Front, Symbolic, TASK_UNKNOWNS};
 use crate::statics::factor::dense::join_if;
@@ -17,14 +17,15 @@ impl Symbolic {
         self.order.iter().flat_map(|&i| x[i as usize].iter().map(|&v| T::of(v))).collect()
     }
 
-    /// Back to the nodes' own order.
+    /// The values in the order of the nodes.
     pub(super) fn restore<T: Real>(&self, y: &[T], x: &mut [Vector3<f64>]) {
         for (&i, v) in self.order.iter().zip(y.as_chunks::<3>().0) {
             x[i as usize] = Vector3::from(v.map(T::wide));
         }
     }
 
-    /// The first half for the front `k` and all below it: what it leaves to its parent.
+    /// Forward substitution for the front `k` and all below it; returns the contribution to its
+    /// parent.
     pub(super) fn forward<T: Real>(&self, k: usize, columns: &[Vec<T>], y: &mut [T]) -> Vec<T> {
         let front = &self.fronts[k];
         let Some((mine, below)) = columns.split_last() else { return Vec::new() };
@@ -46,7 +47,7 @@ impl Symbolic {
         front.forward(mine, y, &rights)
     }
 
-    /// The second half; `border` is the solution there.
+    /// Backward substitution; `border` is the solution on the border.
     pub(super) fn backward<T: Real>(&self, k: usize, columns: &[Vec<T>], y: &mut [T], border: &[T]) {
         let front = &self.fronts[k];
         let Some((mine, below)) = columns.split_last() else { return };
@@ -67,15 +68,15 @@ impl Symbolic {
         }
     }
 
-    /// Whether two branches are large enough to be worked on side by side.
+    /// Whether two branches are large enough to run in parallel.
     pub(super) fn worth(&self, a: usize, b: usize) -> bool {
         self.fronts[a].weight.min(self.fronts[b].weight) > TASK_UNKNOWNS
     }
 }
 
 impl Front {
-    /// Solves for the own unknowns `y`; what the children left is in `rights`, what is left to the
-    /// parent comes back.
+    /// Forward substitution of one front for its own unknowns `y`, with the contributions `rights`
+    /// of the children; returns the contribution to the parent.
     pub(super) fn forward<T: Real>(&self, columns: &[T], y: &mut [T], rights: &[Vec<T>]) -> Vec<T> {
         let own = self.own();
         let mut local = vec![T::ZERO; self.unknowns()];
@@ -91,7 +92,8 @@ impl Front {
         local.split_off(own)
     }
 
-    /// Solves for the own unknowns with the solution on the `border`: the solution on both.
+    /// Backward substitution of one front with the solution on the `border`; returns the solution
+    /// on both.
     fn backward<T: Real>(&self, columns: &[T], y: &mut [T], border: &[T]) -> Vec<T> {
         let own = self.own();
         let mut local = Vec::with_capacity(self.unknowns());
@@ -102,7 +104,7 @@ impl Front {
         local
     }
 
-    /// What a child sees on its border.
+    /// The solution on the border of a child.
     fn seen_by<T: Real>(&self, child: usize, local: &[T]) -> Vec<T> {
         self.child_runs[child].iter().flat_map(|run| local[run.rows().1].iter().copied()).collect()
     }
@@ -127,7 +129,7 @@ fn backward<T: Real>(columns: &[T], local: &mut [T], own: usize) {
     }
 }
 
-/// A dot product in eight running sums, which the compiler can keep side by side.
+/// A dot product in eight partial sums, which the compiler can vectorise.
 fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     let ((a8, a1), (b8, b1)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut sums = [T::ZERO; 8];

@@ -1,51 +1,50 @@
-//! Where some nodes are cut in two.
+//! Bisection of a set of nodes with a small separator.
 //!
-//! Of all cuts across a side whose places lie about the middle, the number of nodes on either side
-//! that have a neighbour on the other is counted in one sweep; the smallest separator wins, and a
-//! crooked half must be worth it. Cost O(n) for n nodes, whose neighbours are few, and O(w log w)
-//! for the w of them about the middle.
+//! Method: for all cuts across an axis near the middle, one sweep counts the nodes on either side
+//! that have a neighbour on the other. The smallest separator is chosen, with a penalty for unequal
+//! halves. Cost: O(n) for n nodes with few neighbours, and O(w log w) for the w nodes near the
+//! middle.
 
 use super::Neighbours;
 use nalgebra::Vector3;
 use std::cmp::Ordering;
 
-/// How far from the middle a cut may lie, as a share of the nodes.
+/// Greatest distance of a cut from the middle, as a share of the nodes.
 const MIDDLE: f64 = 0.1;
 
-/// Sides shorter than this share of the longest are not cut across.
+/// Axes along which the set is shorter than this share of the longest are not tried.
 const LEAST_SIDE: f64 = 0.5;
 
-/// How much a cut away from the middle adds to its separator, by the square of its distance as a
-/// share of half of the nodes.
+/// Penalty for a cut away from the middle: it adds to the separator, by the square of its distance
+/// as a share of half of the nodes.
 const CROOKED: f64 = 2.0;
 
-/// Cuts sets of nodes in two.
-pub(super) struct Halves<'h> {
+/// Bisects sets of nodes.
+pub(super) struct Bisector<'h> {
     layout: &'h [Vector3<f64>],
     neighbours: &'h Neighbours,
-    /// The set that each node is in; none is in 0.
+    /// The set that each node is in; 0 for none.
     set: Vec<u32>,
     sets: u32,
-    /// Which each node of the set at hand is, along the side that is looked at.
+    /// The rank of each node of the present set along the present axis.
     rank: Vec<u32>,
 }
 
-/// A cut across a side.
+/// A cut across an axis.
 struct Cut {
     axis: usize,
-    /// Nodes before it.
+    /// The number of nodes before it.
     before: usize,
-    /// Nodes of its separator, and what is added to them.
+    /// The size of its separator, with the penalty.
     cost: f64,
 }
 
-impl<'h> Halves<'h> {
+impl<'h> Bisector<'h> {
     pub(super) fn new(layout: &'h [Vector3<f64>], neighbours: &'h Neighbours) -> Self {
         Self { layout, neighbours, set: vec![0; layout.len()], sets: 0, rank: vec![0; layout.len()] }
     }
 
-    /// Both halves without the separator, and the separator; each in the order of the nodes'
-    /// numbers.
+    /// Both halves without the separator, and the separator, each sorted by node.
     pub(super) fn of(&mut self, mut nodes: Vec<u32>) -> [Vec<u32>; 3] {
         let half = self.sort(&mut nodes);
         let mut high = nodes.split_off(half);
@@ -74,7 +73,7 @@ impl<'h> Halves<'h> {
         self.neighbours.of(i).iter().any(|&j| self.set[j as usize] == set)
     }
 
-    /// Sorts the nodes so that those before the best cut come first, and says how many they are.
+    /// Sorts the nodes so that those before the best cut come first; returns how many these are.
     fn sort(&mut self, nodes: &mut [u32]) -> usize {
         let sides = sides(nodes, self.layout);
         let set = self.mark(nodes);
@@ -99,22 +98,22 @@ impl<'h> Halves<'h> {
         nodes.select_nth_unstable_by(from, |a, b| self.order(axis, a, b));
         nodes[from..].select_nth_unstable_by(to - from, |a, b| self.order(axis, a, b));
         nodes[from..=to].sort_unstable_by(|a, b| self.order(axis, a, b));
-        // Where exactly the others lie tells nothing.
+        // The order of the other nodes does not matter.
         nodes.iter().enumerate().for_each(|(k, &i)| self.rank[i as usize] = k.clamp(from, to) as u32);
         let cuts =
             self.separators(nodes, set, from, to).into_iter().zip(from..).map(|(separator, before)| {
                 let off = before.abs_diff(half) as f64 / half as f64;
                 Cut { axis, before, cost: f64::from(separator) * (1.0 + CROOKED * off * off) }
             });
-        // Before the first of them lie nodes whose ranks are not told apart.
+        // The nodes before the first of them share a rank.
         let best = cuts.skip(1).min_by(|a, b| a.cost.total_cmp(&b.cost));
         best.unwrap_or(Cut { axis, before: half, cost: f64::INFINITY })
     }
 
     /// The size of the smaller separator of each cut with `from` to `to` nodes before it.
     fn separators(&self, nodes: &[u32], set: u32, from: usize, to: usize) -> Vec<u32> {
-        // How many nodes before a cut meet those behind it, and the other way round, more than at
-        // the cut before.
+        // The change, from the cut before, of the number of nodes before a cut with a neighbour
+        // behind it, and the other way round.
         let mut more = vec![[0i32; 2]; to - from + 2];
         let place = |rank: u32| rank as usize - from + 1;
         for &i in nodes {
@@ -138,7 +137,7 @@ impl<'h> Halves<'h> {
     }
 }
 
-/// The sides of the box around the nodes.
+/// The side lengths of the bounding box of the nodes.
 fn sides(nodes: &[u32], layout: &[Vector3<f64>]) -> Vector3<f64> {
     let places = || nodes.iter().map(|&i| layout[i as usize]);
     let (low, high) = (places().reduce(|a, b| a.inf(&b)), places().reduce(|a, b| a.sup(&b)));

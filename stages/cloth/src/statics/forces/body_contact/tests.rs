@@ -3,8 +3,8 @@ use crate::contact::body::Body;
 use crate::scene::{Scene, generate};
 use crate::statics::factor::scalar::Precision;
 use crate::statics::forces::system::System;
-use crate::statics::levels::trial::on_its_body;
-use crate::statics::newton::to_rest::{NewtonOptions, relax};
+use crate::statics::levels::testing::on_its_body;
+use crate::statics::newton::to_rest::{NewtonOptions, Proof, relax};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
@@ -23,7 +23,7 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
     let mut x = scene.positions.clone();
     let middle = (0..x.len()).min_by(|&a, &b| x[a].xz().norm().total_cmp(&x[b].xz().norm())).unwrap();
     let (stiffness, offset) = {
-        let s = system.support.as_mut().unwrap();
+        let s = system.body_contact.as_mut().unwrap();
         // So that the layer is as thick everywhere.
         s.edges.clear();
         (s.stiffness[middle], s.offsets[middle])
@@ -32,25 +32,31 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
     let load = 10.0 * stiffness * 0.5 * offset;
     system.push = vec![Vec3::zeros(); x.len()];
     system.push[middle] = Vec3::y() * -load;
-    let pace = NewtonOptions {
+    let options = NewtonOptions {
         first: 0.05,
         longest: 1.0,
         steps: 300,
         speed: 1e-3,
         non_static: 0.0,
         farthest: 0.05,
-        prove: true,
+        proof: Proof::ProofStep,
         precision: Precision::Double,
-        rough: false,
-        yields: false,
+        skip_line_search: false,
+        holds_stopped: false,
         one_by_one: false,
-        long_proof: false,
         asleep: true,
     };
     let layout = scene.positions.clone();
-    let outcome =
-        relax(&mut system, &layout, None, &mut x, &pace, &mut |_, _, _| ControlFlow::Continue(()), &|| false)
-            .unwrap();
+    let outcome = relax(
+        &mut system,
+        &layout,
+        None,
+        &mut x,
+        &options,
+        &mut |_, _, _| ControlFlow::Continue(()),
+        &|| false,
+    )
+    .unwrap();
     assert!(outcome.at_rest && outcome.residual < 1e-3 * load, "{outcome:?}");
     let touch = system.touches.iter().find(|t| t.node as usize == middle).unwrap();
     assert!(touch.force > 0.9 * load, "{} of {load} N", touch.force);
@@ -68,13 +74,13 @@ fn contact_that_is_hard_brings_a_node_out_of_the_body() {
         let top = (0..x.len()).min_by(|&a, &b| x[a].xz().norm().total_cmp(&x[b].xz().norm())).unwrap();
         let height = body.nearest(&x[top], 1.0).unwrap().distance;
         x[top] -= Vec3::y() * (height + 5e-3);
-        let of = |system: &System<'_>, i: usize| system.support.as_ref().unwrap().stiffness[i];
+        let of = |system: &System<'_>, i: usize| system.body_contact.as_ref().unwrap().stiffness[i];
         let before = (of(&system, top), of(&system, top + 1));
-        system.touch(&x);
-        system.touch(&x);
+        system.update_contacts(&x);
+        system.update_contacts(&x);
         assert_eq!((of(&system, top), of(&system, top + 1)), before, "it is not hard yet");
-        system.support.as_mut().unwrap().hard = true;
-        (0..3).for_each(|_| system.touch(&x));
+        system.body_contact.as_mut().unwrap().stiffens_inside = true;
+        (0..3).for_each(|_| system.update_contacts(&x));
         assert_eq!((of(&system, top), of(&system, top + 1)), (16.0 * before.0, before.1));
         let force = system.touches.iter().find(|t| t.node as usize == top).unwrap().force;
         assert!(force > 15.0 * before.0 * 5e-3, "{force}");

@@ -109,7 +109,7 @@ fn a_flat_sheet_bends_nowhere() {
     assert!(gradient(&elastic, &flat).iter().all(|g| g.norm() < 1e-12));
 }
 
-/// Folds that a coarser mesh hands on lie along its edges; smoothing spreads them.
+/// Prolonged folds lie along the edges of the coarser mesh; smoothing spreads them.
 #[test]
 fn facets_of_a_coarser_mesh_are_held_as_a_curve() {
     let (n, bend) = (16, 2);

@@ -18,7 +18,7 @@ fn over(triangle: [u32; 3]) -> Pair {
     Pair { kind: Kind::VertexTriangle, nodes: [4, a, b, c] }
 }
 
-fn layers(triangle: [u32; 3]) -> SelfContact {
+fn self_contact(triangle: [u32; 3]) -> SelfContact {
     SelfContact {
         thickness: 1e-3,
         stiffness: vec![100.0; 5],
@@ -29,19 +29,19 @@ fn layers(triangle: [u32; 3]) -> SelfContact {
     }
 }
 
-/// SelfContact that have touched at `x` and slid on.
+/// Self-contact that has touched at `x`, and the positions after it has slid.
 fn slid(way: Vec3) -> (SelfContact, Vec<Vec3>) {
-    let (mut layers, mut x) = (layers([0, 1, 2]), places());
-    layers.touch(&x);
+    let (mut self_contact, mut x) = (self_contact([0, 1, 2]), places());
+    self_contact.update_contacts(&x);
     x[4] += way;
-    layers.touch(&x);
-    (layers, x)
+    self_contact.update_contacts(&x);
+    (self_contact, x)
 }
 
 /// The force on vertex 4 along the sheet.
-fn force(layers: &SelfContact, x: &[Vec3]) -> Vec3 {
+fn force(self_contact: &SelfContact, x: &[Vec3]) -> Vec3 {
     let mut g = vec![Vec3::zeros(); 5];
-    layers.add_gradient(x, &mut g);
+    self_contact.add_gradient(x, &mut g);
     assert!(g.iter().sum::<Vec3>().norm() < 1e-12, "what holds one pulls the other");
     Vec3::new(-g[4].x, 0.0, -g[4].z)
 }
@@ -58,51 +58,52 @@ fn friction_grows_to_its_limit_against_the_way() {
 
 #[test]
 fn a_vertex_that_slides_onto_the_next_triangle_is_held_as_before() {
-    let (mut layers, mut x) = slid(Vec3::new(1e-4, 0.0, 0.0));
-    let before = force(&layers, &x);
-    layers.pairs = vec![over([1, 3, 2])];
+    let (mut self_contact, mut x) = slid(Vec3::new(1e-4, 0.0, 0.0));
+    let before = force(&self_contact, &x);
+    self_contact.pairs = vec![over([1, 3, 2])];
     // A hair over the border: the way is as long as before, but the contact another one.
     let step = Vec3::new(0.0021, 0.0, 0.0021);
-    layers.friction_contacts[0].anchor += step;
+    self_contact.friction_contacts[0].anchor += step;
     x[4] += step;
-    layers.touch(&x);
-    assert_eq!(layers.friction_contacts[0].nodes, [4, 1, 3, 2]);
-    assert!((force(&layers, &x) - before).norm() < 1e-9, "{before} {}", force(&layers, &x));
-    layers.friction_contacts.clear();
-    layers.touch(&x);
-    assert!(force(&layers, &x).norm() < 1e-12);
+    self_contact.update_contacts(&x);
+    assert_eq!(self_contact.friction_contacts[0].nodes, [4, 1, 3, 2]);
+    assert!((force(&self_contact, &x) - before).norm() < 1e-9, "{before} {}", force(&self_contact, &x));
+    self_contact.friction_contacts.clear();
+    self_contact.update_contacts(&x);
+    assert!(force(&self_contact, &x).norm() < 1e-12);
 }
 
 #[test]
 fn a_contact_seen_from_the_other_side_takes_the_way_over_turned_round() {
-    let (layers, x) = slid(Vec3::new(1e-4, 0.0, 0.0));
-    let turned = Contact { nodes: [0, 4, 1, 2], weights: [1.0, -1.0, 0.0, 0.0], ..layers.contacts[0] };
-    let grip = Memory::of(&layers.friction_contacts, &x).grip(&turned, &x, 1.0, MU);
-    assert!((grip.slid + Vec3::new(1e-4, 0.0, 0.0)).norm() < 1e-12, "{}", grip.slid);
+    let (self_contact, x) = slid(Vec3::new(1e-4, 0.0, 0.0));
+    let turned = Contact { nodes: [0, 4, 1, 2], weights: [1.0, -1.0, 0.0, 0.0], ..self_contact.contacts[0] };
+    let new = FrictionHistory::of(&self_contact.friction_contacts, &x).friction_contact(&turned, &x, 1.0, MU);
+    assert!((new.slid + Vec3::new(1e-4, 0.0, 0.0)).norm() < 1e-12, "{}", new.slid);
 }
 
 #[test]
 fn the_anchor_is_dragged_only_behind_what_slides_on() {
-    let (mut layers, mut x) = slid(Vec3::new(3e-4, 0.0, 0.0));
-    let held = layers.friction_contacts.clone();
-    layers.drag(&x);
-    assert_eq!(layers.friction_contacts, held);
+    let (mut self_contact, mut x) = slid(Vec3::new(3e-4, 0.0, 0.0));
+    let held = self_contact.friction_contacts.clone();
+    self_contact.drag_anchors(&x);
+    assert_eq!(self_contact.friction_contacts, held);
     x[4].x += 2e-4;
-    layers.drag(&x);
-    let way = layers.friction_contacts[0].rub().way(&layers.friction_contacts[0].at(&x));
+    self_contact.drag_anchors(&x);
+    let way =
+        self_contact.friction_contacts[0].coulomb().displacement(&self_contact.friction_contacts[0].at(&x));
     assert!((way.norm() - 0.577e-4).abs() < 1e-9, "{way}");
 }
 
 #[test]
 fn force_and_matrix_are_derivatives_and_the_matrix_never_softens() {
-    let (layers, mut x) = slid(Vec3::new(0.7e-4, 0.0, 0.4e-4));
-    let pattern = Pattern::new(5, |visit| layers.groups().for_each(|g| visit(g)));
+    let (self_contact, mut x) = slid(Vec3::new(0.7e-4, 0.0, 0.4e-4));
+    let pattern = Pattern::new(5, |visit| self_contact.groups().for_each(|g| visit(g)));
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
-    layers.add_matrix(&x, &pattern, &mut values);
+    self_contact.add_matrix(&x, &pattern, &mut values);
     let gradient = |x: &[Vec3]| {
         let mut g = vec![Vec3::zeros(); 5];
-        layers.friction_contacts.iter().for_each(|r| {
-            let f = r.rub().gradient(&r.at(x));
+        self_contact.friction_contacts.iter().for_each(|r| {
+            let f = r.coulomb().gradient(&r.at(x));
             r.nodes.iter().zip(&r.weights).for_each(|(i, w)| g[*i as usize] += f * *w);
         });
         g
@@ -118,13 +119,14 @@ fn force_and_matrix_are_derivatives_and_the_matrix_never_softens() {
     }
     let scale = all.norm();
     assert!(all.clone().symmetric_eigenvalues().iter().all(|e| *e > -1e-12 * scale));
-    let rub: f64 = layers.friction_contacts.iter().map(|g| g.rub().value(&g.at(&x))).sum();
-    assert!(rub > 0.0);
-    let normal = layers.contacts[0].normal;
+    let friction: f64 = self_contact.friction_contacts.iter().map(|c| c.coulomb().value(&c.at(&x))).sum();
+    assert!(friction > 0.0);
+    let normal = self_contact.contacts[0].normal;
     for (i, c) in (0..5).flat_map(|i| [0, 2].map(|c| (i, c))) {
         let (h, was) = (1e-8, x[i][c]);
-        let value =
-            |x: &[Vec3]| -> f64 { layers.friction_contacts.iter().map(|g| g.rub().value(&g.at(x))).sum() };
+        let value = |x: &[Vec3]| -> f64 {
+            self_contact.friction_contacts.iter().map(|c| c.coulomb().value(&c.at(x))).sum()
+        };
         x[i][c] = was + h;
         let (up, more) = (value(&x), gradient(&x));
         x[i][c] = was - h;

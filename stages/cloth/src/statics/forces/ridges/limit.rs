@@ -1,9 +1,11 @@
-//! Moves that would lead cloth past a sharp feature: the cloth gives way, and what still would pass
-//! ends before.
+//! Keeps cloth from passing a sharp feature within a step: first the cloth gives way, then moves
+//! that would still pass are shortened.
 //!
-//! As for cloth against cloth (see `contact/give_way` and `contact/limit`), with features that
-//! stand still. The distance of a pair is kept by additive continuous collision detection, so no
-//! step jumps over a blade. Cloth that the body passes through already is not held back.
+//! The method is that of cloth against cloth (see `contact/response` and `contact/step_limit`),
+//! with features that do not move. Impacts are found by additive continuous collision detection, so
+//! no step jumps over a thin feature. Cloth that the body already passes through is not held back.
+//!
+//! Cost: one collision test per pair and round.
 
 use super::{Pair, Ridges};
 use nalgebra::Vector3;
@@ -19,26 +21,28 @@ const ROUNDS: usize = 4;
 /// Share of the time to impact that is used.
 const SAFETY: f64 = 0.9;
 
-/// Distance that a pair keeps which gives way, as a share of the thickness, or of its own where
-/// that is less; and the least share of its own that it keeps of a long way. A contact presses only
-/// from a thickness on: what would lose all of its way to a feature far away never came to lie on
-/// it.
-const KEPT: (f64, f64) = (0.5, 0.15);
+/// Distance that a pair keeps when it gives way, as a share of the thickness, or of its present
+/// distance where that is less.
+const KEPT_DISTANCE: f64 = 0.5;
 
-/// Nearer than this the two sides of a feature are not told apart, m.
+/// Least share of its present distance that a pair keeps. It is below 1 so that cloth reaches a
+/// feature that is farther away than the thickness, at which contact begins.
+const KEPT_SHARE: f64 = 0.15;
+
+/// Below this distance the two sides of a feature cannot be told apart, m.
 const TOUCHING: f64 = 1e-9;
 
 impl Ridges {
-    /// Takes from `moves` what leads the closest points of pairs that would meet too near together,
-    /// where nodes are not `held`; whose moves have changed.
-    pub(crate) fn give_way(&self, x: &[Vec3], moves: &mut [Vec3], held: &[bool]) -> Vec<bool> {
+    /// Takes from `moves` the share by which the closest points of colliding pairs come too near.
+    /// Nodes that are `held` stay. Returns which moves have changed.
+    pub(crate) fn respond(&self, x: &[Vec3], moves: &mut [Vec3], held: &[bool]) -> Vec<bool> {
         let mut pushed = vec![false; x.len()];
         for _ in 0..ROUNDS {
-            let meeting = self.hits(x, moves);
-            if meeting.is_empty() {
+            let impacts = self.impacts(x, moves);
+            if impacts.is_empty() {
                 break;
             }
-            for (pair, _) in meeting {
+            for (pair, _) in impacts {
                 self.push(&pair, x, moves, held, &mut pushed);
             }
         }
@@ -49,7 +53,7 @@ impl Ridges {
         let near = pair.near(&self.sharp, x);
         let normal = near.off / near.distance;
         let own = || (0..pair.count()).map(|k| (pair.nodes[k] as usize, near.weights[k]));
-        let kept = (KEPT.0 * self.thickness.min(near.distance)).max(KEPT.1 * near.distance);
+        let kept = (KEPT_DISTANCE * self.thickness.min(near.distance)).max(KEPT_SHARE * near.distance);
         let apart = own().map(|(i, w)| moves[i].dot(&normal) * w).sum::<f64>() + near.distance - kept;
         let sum = own().filter(|(i, _)| !held[*i]).map(|(_, w)| w * w).sum::<f64>();
         if apart >= 0.0 || sum == 0.0 {
@@ -61,10 +65,10 @@ impl Ridges {
         }
     }
 
-    /// Shortens moves, node by node, so that no pair meets.
-    pub(crate) fn hold_apart(&self, x: &[Vec3], moves: &mut [Vec3]) {
+    /// Shortens moves, node by node, so that no pair collides.
+    pub(crate) fn limit_step(&self, x: &[Vec3], moves: &mut [Vec3]) {
         for _ in 0..ROUNDS {
-            let hits = self.hits(x, moves);
+            let hits = self.impacts(x, moves);
             if hits.is_empty() {
                 return;
             }
@@ -74,19 +78,19 @@ impl Ridges {
             }
             moves.iter_mut().zip(share).filter(|(_, s)| *s < 1.0).for_each(|(m, s)| *m *= s);
         }
-        self.stop(x, moves);
+        self.scale_step(x, moves);
     }
 
-    /// Shortens all moves alike, so that no pair meets.
-    pub(crate) fn stop(&self, x: &[Vec3], moves: &mut [Vec3]) {
-        let least = self.hits(x, moves).iter().map(|(_, t)| *t).fold(1.0, f64::min);
+    /// Shortens all moves alike, so that no pair collides.
+    pub(crate) fn scale_step(&self, x: &[Vec3], moves: &mut [Vec3]) {
+        let least = self.impacts(x, moves).iter().map(|(_, t)| *t).fold(1.0, f64::min);
         if least < 1.0 {
             moves.iter_mut().for_each(|m| *m *= SAFETY * least);
         }
     }
 
-    /// The pairs that would meet, and when.
-    fn hits(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(Pair, f64)> {
+    /// The pairs that would collide, and their times of impact.
+    fn impacts(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(Pair, f64)> {
         let hit = |p: &Pair| {
             if self.is_free(p) {
                 return None;
@@ -106,8 +110,8 @@ impl Ridges {
         self.pairs.par_iter().with_min_len(256).filter_map(hit).collect()
     }
 
-    /// Whether the cloth of a pair is one that the body passes through: it must get past features
-    /// to get out.
+    /// Whether the body passes through the cloth of a pair: that cloth must pass features to get
+    /// out.
     fn is_free(&self, pair: &Pair) -> bool {
         self.pierced.iter().any(|p| {
             let shared = p.nodes[..p.count()].iter().filter(|i| pair.nodes.contains(i)).count();

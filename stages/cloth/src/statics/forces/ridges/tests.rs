@@ -2,7 +2,7 @@
 use crate::scene::Scene;
 use crate::scene::generate;
 use crate::statics::forces::system::System;
-use crate::statics::levels::trial::on_its_body;
+use crate::statics::levels::testing::on_its_body;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -17,10 +17,10 @@ fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
 }
 
 fn ready(system: &mut System<'_>, x: &[Vec3]) {
-    system.look_for_pierced(x);
+    system.find_pierced(x);
     system.seek_ridges(x);
-    let support = system.support.clone().unwrap();
-    system.ridges.as_mut().unwrap().touch(&support, x);
+    let body_contact = system.body_contact.clone().unwrap();
+    system.ridges.as_mut().unwrap().update_contacts(&body_contact, x);
 }
 
 /// The lowest height at which the sheet's edges pass over the blade's middle, m.

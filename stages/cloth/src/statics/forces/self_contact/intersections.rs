@@ -1,5 +1,8 @@
-//! Cloth that has passed through cloth, as a coarser level's state carried to a finer one can have
-//! it, is pulled back out.
+//! Intersection resolution: cloth that has passed through cloth is pulled back out.
+//!
+//! The state of a coarser level may intersect itself on a finer one. For each edge that passes
+//! through a triangle, a spring pulls the end that has gone through less back to the other side.
+//! Cost: O(n) of the pairs. Limit: large intersections may stay (see `drive/contour`).
 
 use super::{Contact, SelfContact};
 use crate::statics::forces::contact_potential::ContactPotential;
@@ -10,45 +13,45 @@ use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the thickness below which cloth lies in cloth: under its own weight it keeps a tenth
-/// and more.
+/// Share of the thickness below which a pair counts as merged; under its own weight cloth keeps a
+/// tenth and more.
 pub(crate) const MERGED: f64 = 0.02;
 
 impl SelfContact {
-    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled
-    /// back to the other side. Cloth that lies in cloth counts as tangled, too.
-    pub fn untangle(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
+    /// Makes a spring for each crossing at `x`, and marks the nodes of crossings and merged pairs
+    /// as intersecting.
+    pub fn resolve_intersections(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
         let merged = self.merged(x);
         let free = crossings.is_empty() && merged.is_empty();
-        self.tangled = vec![false; if free { 0 } else { x.len() }];
+        self.intersecting = vec![false; if free { 0 } else { x.len() }];
         let crossed = crossings.iter().flat_map(|(e, t)| e.iter().chain(t));
-        crossed.chain(merged.iter().flat_map(|p| &p.nodes)).for_each(|&i| self.tangled[i as usize] = true);
-        self.tangles = crossings.iter().filter_map(|(e, t)| self.tangle(*e, *t, x)).collect();
+        crossed
+            .chain(merged.iter().flat_map(|p| &p.nodes))
+            .for_each(|&i| self.intersecting[i as usize] = true);
+        self.intersections = crossings.iter().filter_map(|(e, t)| self.intersection(*e, *t, x)).collect();
     }
 
-    /// Pairs so near that the wall between them and the search for the first impact would hold them
-    /// there for ever.
+    /// Pairs so near that barrier and collision detection would never let them separate.
     fn merged(&self, x: &[Vec3]) -> Vec<Pair> {
         self.pairs.par_iter().with_min_len(256).filter(|p| self.is_merged(p, x)).copied().collect()
     }
 
-    /// The nodes of each crossing and of each pair that lies in each other, an edge's or a vertex's
-    /// own first.
-    pub(crate) fn entangled(&self, x: &[Vec3]) -> Vec<[u32; 4]> {
-        self.tangles.iter().map(|c| c.nodes).chain(self.merged(x).iter().map(|p| p.nodes)).collect()
+    /// The nodes of each crossing and of each merged pair; those of the edge or vertex come first.
+    pub(crate) fn intersecting_nodes(&self, x: &[Vec3]) -> Vec<[u32; 4]> {
+        self.intersections.iter().map(|c| c.nodes).chain(self.merged(x).iter().map(|p| p.nodes)).collect()
     }
 
-    /// Whether the pair is one of them.
+    /// Whether a pair is merged: nearer than `MERGED` of the thickness.
     pub fn is_merged(&self, pair: &Pair, x: &[Vec3]) -> bool {
         pair.closest(x).distance < MERGED * self.thickness
     }
 
-    fn tangle(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {
+    fn intersection(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {
         let [a, b, c] = t.map(|v| x[v as usize]);
         let up = (b - a).cross(&(c - a)).try_normalize(0.0)?;
         let height = |v: u32| up.dot(&(x[v as usize] - a));
         let (shallow, normal) = match self.side(&e, &t) {
-            // The order of the layers tells which end is on the wrong side.
+            // The order of the layers decides which end is on the wrong side.
             Some(side) => (if side * height(e[0]) < side * height(e[1]) { e[0] } else { e[1] }, up * side),
             None => {
                 let [shallow, deep] = if height(e[0]).abs() < height(e[1]).abs() { e } else { [e[1], e[0]] };
@@ -60,12 +63,12 @@ impl SelfContact {
         let weights = [1.0, -on.weights[0], -on.weights[1], -on.weights[2]];
         let distance = normal.dot(&(x[shallow as usize] - on.point));
         let stiffness = 0.5 * self.stiffness[shallow as usize];
-        let press = ContactPotential::spring(stiffness, self.thickness, distance);
-        Some(Contact { nodes, weights, normal, stiffness, press })
+        let potential = ContactPotential::spring(stiffness, self.thickness, distance);
+        Some(Contact { nodes, weights, normal, stiffness, potential })
     }
 
-    /// On which side of a triangle an edge of another layer belongs: 1 outside, -1 inside; nothing
-    /// where they are one layer.
+    /// The side of a triangle on which an edge of another layer belongs: 1 outside, -1 inside;
+    /// `None` where they are in one layer.
     fn side(&self, e: &[u32; 2], t: &[u32; 3]) -> Option<f64> {
         let of = |v: &u32| self.order.get(*v as usize).copied();
         let one = |nodes: &[u32]| {
@@ -78,16 +81,16 @@ impl SelfContact {
         }
     }
 
-    /// Whether an edge and a triangle are of two layers, whose order resolves their crossing.
+    /// Whether an edge and a triangle are in two layers, whose order resolves their crossing.
     #[must_use]
     pub fn is_ordered(&self, e: &[u32; 2], t: &[u32; 3]) -> bool {
         self.side(e, t).is_some()
     }
 
-    /// Whether the pair lies among tangled nodes only.
+    /// Whether all nodes of the pair are intersecting.
     #[must_use]
-    pub fn is_tangled(&self, pair: &Pair) -> bool {
-        !self.tangled.is_empty() && pair.nodes.iter().all(|&i| self.tangled[i as usize])
+    pub fn is_intersecting(&self, pair: &Pair) -> bool {
+        !self.intersecting.is_empty() && pair.nodes.iter().all(|&i| self.intersecting[i as usize])
     }
 }
 

@@ -1,5 +1,5 @@
 //! Which vertices a coarser level keeps: a maximal independent set, corners and pins first, then
-//! outlines, then the inside.
+//! outlines, then the inside. Cost: O(n).
 
 use super::{Mesh, Pieces};
 
@@ -28,7 +28,7 @@ pub(super) fn independent(fine: &Pieces, mesh: &Mesh) -> Vec<bool> {
     keep
 }
 
-/// The points of the outlines, walked from one to the next, so that every second one is kept.
+/// The points of the outlines in their order along them, so that every second one is kept.
 fn outline_order(fine: &Pieces, mesh: &Mesh, must: &[bool]) -> Vec<usize> {
     let mut seen = vec![false; fine.points];
     let mut order = Vec::new();
@@ -65,7 +65,7 @@ fn must_keep(p: usize, fine: &Pieces, mesh: &Mesh) -> bool {
         let Some([a, b]) = mesh.outline[i] else { return true };
         let (from, to) = (fine.rest[i] - fine.rest[a as usize], fine.rest[b as usize] - fine.rest[i]);
         let turns = from.dot(&to) < CORNER_COSINE * from.norm() * to.norm();
-        // Where a seam begins or ends, its two sides part.
+        // The ends of a seam are kept, where its two sides separate.
         turns || sewn(a) != sewn(v) || sewn(b) != sewn(v)
     })
 }

@@ -1,6 +1,6 @@
-//! Which coarse triangle a fine vertex lies in, and its weights there.
+//! Point location: the coarse triangle in which a fine vertex lies, and its weights there.
 //!
-//! Cost: one look into a grid of cells as large as a triangle.
+//! Method: a grid of cells as large as a triangle. Cost: O(1) a vertex.
 
 use super::Pieces;
 use nalgebra::Vector2;
@@ -39,7 +39,8 @@ impl<'a> Locator<'a> {
         fine.rest.iter().zip(&fine.piece).map(|(p, &piece)| self.find(p, piece)).collect()
     }
 
-    /// The triangle that `p` lies in, or least far outside of, and its weights there.
+    /// The triangle in which `p` lies, or from which it is least far outside, and its weights
+    /// there.
     fn find(&self, p: &Vector2<f64>, piece: u32) -> ([u32; 3], [f64; 3]) {
         let (ci, cj) = ((p.x / self.cell).floor() as i64, (p.y / self.cell).floor() as i64);
         let mut best: Option<(f64, u32, [f64; 3])> = None;

@@ -1,19 +1,18 @@
-//! Collapses that keep the sewn sheet a surface.
+//! Whether a collapse keeps the sewn sheet a manifold.
 //!
-//! Two panels of like shape are two meshes and one surface: where both have an edge between the
-//! same two points of their seams, four triangles share it once it is sewn. So the triangles at the
-//! sewn edges are counted before a collapse (the link condition of Dey, Edelsbrunner, Guha and
-//! Nekhayev 1999, for the sewn sheet).
+//! Two panels of similar shape may both get an edge between the same two points of their seams,
+//! which four triangles would share after sewing. So the triangles at sewn edges are counted before
+//! a collapse (the link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999, for the sewn
+//! sheet). Cost: that of the triangles around two points.
 
 use super::{Mesh, Pieces};
 
-/// Triangles that may share an edge, where no seam joins more sheets.
+/// Greatest number of triangles at an edge, unless a seam joins more sheets.
 const MOST: usize = 2;
 
 impl Mesh {
-    /// Whether edges of the sewn sheet keep two triangles at most when each vertex moves onto its
-    /// other one; or as many as one of them there has before, for a seam of three sheets is
-    /// coarsened as one.
+    /// Whether the edges of the sewn sheet have at most two triangles after the collapses `moves`,
+    /// or as many as an edge there had before, for a seam of three sheets is coarsened as one.
     pub(super) fn stays_manifold(&self, moves: &[[u32; 2]], fine: &Pieces) -> bool {
         let Some(&ends) = moves.first() else { return true };
         if !self.nears_seam(ends, fine) {
@@ -48,7 +47,7 @@ impl Mesh {
     }
 }
 
-/// How often the most frequent edge is listed.
+/// How many times the most frequent edge is listed.
 fn most_alike(edges: &mut [[u32; 2]]) -> usize {
     edges.sort_unstable();
     edges.chunk_by(|a, b| a == b).map(<[_]>::len).max().unwrap_or(0)

@@ -3,20 +3,20 @@ use super::*;
 use crate::linear::Pattern;
 use crate::mesh::Sheet;
 use crate::scene::{Scene, generate};
-use crate::statics::levels::trial::on_its_body;
+use crate::statics::levels::testing::on_its_body;
 use crate::statics::newton::nearby::Nearby;
 use toile_geometry::cloth_tree::ClothTree;
 
-/// A square on a ball, creased, in contact with the ball and with itself; every third node is awake
-/// in the half of greater x.
-fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
+/// A square on a ball, creased, in contact with the ball and with itself; every third node is
+/// active in the half of greater x.
+fn with_subdomain(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
     let mut scene: Scene = generate::drape(14);
     scene.material.bending_friction_warp = 1e-6;
     scene.material.bending_friction_weft = 5e-7;
-    on_its_body(&scene, |system, _, sheet| lay(&scene, system, sheet, check));
+    on_its_body(&scene, |system, _, sheet| lay_folded(&scene, system, sheet, check));
 }
 
-fn lay(
+fn lay_folded(
     scene: &Scene,
     mut system: System<'_>,
     sheet: &Sheet,
@@ -35,27 +35,29 @@ fn lay(
     let x: Vec<Vec3> = flat.iter().map(fold).collect();
     let mut nearby = Nearby::new(Some(ClothTree::new(sheet.triangles(), &flat)));
     nearby.seek_about(&mut system, &x, &vec![true; x.len()]);
-    system.touch(&x);
+    system.update_contacts(&x);
     system.elastic.hold(&flat, false);
     assert!(system.elastic.holds());
-    let awake = flat.iter().enumerate().map(|(i, p)| p.x > 0.05 && i % 3 == 0).collect();
-    check(system, x, awake);
+    let active = flat.iter().enumerate().map(|(i, p)| p.x > 0.05 && i % 3 == 0).collect();
+    check(system, x, active);
 }
 
 #[test]
-fn awake_nodes_feel_what_they_feel_in_the_whole() {
-    with_part(|system, x, awake| {
+fn active_nodes_have_the_forces_of_the_whole() {
+    with_subdomain(|system, x, active| {
         let whole = system.gradient(&x);
-        assert!(system.layers.as_ref().is_some_and(|l| l.contacts.len() > 20));
+        assert!(system.self_contact.as_ref().is_some_and(|c| c.contacts.len() > 20));
         assert!(system.touches.iter().any(|t| t.force > 0.0));
-        let mut part = Part::of(&system, awake.clone());
-        let own = part.pick(&x);
-        part.system.touch(&own);
+        let mut subdomain = Subdomain::of(&system, active.clone());
+        let own = subdomain.pick(&x);
+        subdomain.system.update_contacts(&own);
         let scale = whole.iter().map(Vec3::norm).fold(0.0, f64::max);
-        for ((g, i), pinned) in part.system.gradient(&own).iter().zip(&part.nodes).zip(&part.system.pinned) {
+        for ((g, i), pinned) in
+            subdomain.system.gradient(&own).iter().zip(&subdomain.nodes).zip(&subdomain.system.pinned)
+        {
             let i = *i as usize;
-            assert_eq!(*pinned, !awake[i]);
-            assert!((g - if awake[i] { whole[i] } else { Vec3::zeros() }).norm() < 1e-9 * scale, "{i}");
+            assert_eq!(*pinned, !active[i]);
+            assert!((g - if active[i] { whole[i] } else { Vec3::zeros() }).norm() < 1e-9 * scale, "{i}");
         }
     });
 }
@@ -65,7 +67,7 @@ fn stiffness(system: &mut System<'_>, x: &[Vec3], way: &[Vec3]) -> Vec<Vec3> {
     let own = system.pattern();
     system.elastic.bind(&own);
     let contacts = |visit: &mut dyn FnMut(&[u32])| {
-        system.layers.iter().flat_map(|l| l.groups()).for_each(|g| visit(g));
+        system.self_contact.iter().flat_map(|c| c.groups()).for_each(|g| visit(g));
     };
     let (pattern, slots): (Pattern, _) = own.with(contacts);
     system.elastic.follow(&pattern, &slots);
@@ -77,18 +79,18 @@ fn stiffness(system: &mut System<'_>, x: &[Vec3], way: &[Vec3]) -> Vec<Vec3> {
 }
 
 #[test]
-fn awake_nodes_are_as_stiff_as_in_the_whole() {
-    with_part(|mut system, x, awake| {
+fn active_nodes_are_as_stiff_as_in_the_whole() {
+    with_subdomain(|mut system, x, active| {
         let way = |i: usize| Vec3::new((3 * i) as f64, (5 * i) as f64, (7 * i) as f64).map(f64::sin);
-        let ways: Vec<Vec3> = (0..x.len()).map(|i| if awake[i] { way(i) } else { Vec3::zeros() }).collect();
+        let ways: Vec<Vec3> = (0..x.len()).map(|i| if active[i] { way(i) } else { Vec3::zeros() }).collect();
         system.elastic.predict(&x, &ways.iter().map(|w| w * 1e-4).collect::<Vec<_>>());
-        let mut part = Part::of(&system, awake.clone());
-        let (own, own_ways) = (part.pick(&x), part.pick(&ways));
-        part.system.touch(&own);
+        let mut subdomain = Subdomain::of(&system, active.clone());
+        let (own, own_ways) = (subdomain.pick(&x), subdomain.pick(&ways));
+        subdomain.system.update_contacts(&own);
         let whole = stiffness(&mut system, &x, &ways);
-        let found = stiffness(&mut part.system, &own, &own_ways);
+        let found = stiffness(&mut subdomain.system, &own, &own_ways);
         let scale = whole.iter().map(Vec3::norm).fold(0.0, f64::max);
-        for (f, &i) in found.iter().zip(&part.nodes).filter(|(_, i)| awake[**i as usize]) {
+        for (f, &i) in found.iter().zip(&subdomain.nodes).filter(|(_, i)| active[**i as usize]) {
             assert!((f - whole[i as usize]).norm() < 1e-9 * scale, "{i}");
         }
     });
@@ -96,76 +98,84 @@ fn awake_nodes_are_as_stiff_as_in_the_whole() {
 
 #[test]
 fn what_a_part_found_comes_back_to_its_nodes_alone() {
-    with_part(|mut system, x, awake| {
+    with_subdomain(|mut system, x, active| {
         let mut whole = x.clone();
         system.elastic.predict(&x, &vec![Vec3::zeros(); x.len()]);
-        let before = (system.loads.clone(), system.layers.as_ref().unwrap().friction_contacts.clone());
-        let mut part = Part::of(&system, awake.clone());
+        let before = (system.loads.clone(), system.self_contact.as_ref().unwrap().friction_contacts.clone());
+        let mut subdomain = Subdomain::of(&system, active.clone());
         let held = system.elastic.held().to_vec();
-        let mut own = part.pick(&x);
-        let moved = |i: u32| if awake[i as usize] { Vec3::new(0.0, -1e-4, 0.0) } else { Vec3::zeros() };
-        own.iter_mut().zip(&part.nodes).for_each(|(p, &i)| *p += moved(i));
-        part.system.touch(&own);
-        let among: Vec<bool> = (0..x.len() as u32).map(|i| part.nodes.contains(&i)).collect();
-        part.system.drag(&own);
-        part.put_back(&own, &mut system, &mut whole);
+        let mut own = subdomain.pick(&x);
+        let moved = |i: u32| if active[i as usize] { Vec3::new(0.0, -1e-4, 0.0) } else { Vec3::zeros() };
+        own.iter_mut().zip(&subdomain.nodes).for_each(|(p, &i)| *p += moved(i));
+        subdomain.system.update_contacts(&own);
+        let among: Vec<bool> = (0..x.len() as u32).map(|i| subdomain.nodes.contains(&i)).collect();
+        subdomain.system.drag_anchors(&own);
+        subdomain.put_back(&own, &mut system, &mut whole);
         let dragged = system.elastic.held().iter().zip(&held).filter(|(a, b)| a != b).count();
         assert!(dragged > 10 && dragged < held.len() / 2, "{dragged} of {}", held.len());
         for i in 0..x.len() {
             assert_eq!(whole[i], x[i] + moved(i as u32));
             assert!(among[i] || system.loads[i] == before.0[i]);
         }
-        let friction_contacts = &system.layers.as_ref().unwrap().friction_contacts;
+        let friction_contacts = &system.self_contact.as_ref().unwrap().friction_contacts;
         assert!(friction_contacts.is_sorted_by_key(FrictionContact::key) && *friction_contacts != before.1);
-        let asleep = |g: &&FrictionContact| g.nodes.iter().all(|&i| !awake[i as usize]);
+        let asleep = |g: &&FrictionContact| g.nodes.iter().all(|&i| !active[i as usize]);
         assert!(friction_contacts.iter().filter(asleep).eq(before.1.iter().filter(asleep)));
     });
 }
 
 #[test]
-fn a_grip_whose_pair_has_gone_is_left_out() {
-    with_part(|mut system, x, awake| {
-        let layers = system.layers.as_mut().unwrap();
-        layers.friction = vec![0.3; x.len()];
-        system.touch(&x);
-        let layers = system.layers.as_mut().unwrap();
-        let gripped =
-            layers.friction_contacts.iter().filter(|g| g.nodes.iter().any(|&i| awake[i as usize])).count();
+fn friction_whose_pair_has_gone_is_left_out() {
+    with_subdomain(|mut system, x, active| {
+        let self_contact = system.self_contact.as_mut().unwrap();
+        self_contact.friction = vec![0.3; x.len()];
+        system.update_contacts(&x);
+        let self_contact = system.self_contact.as_mut().unwrap();
+        let gripped = self_contact
+            .friction_contacts
+            .iter()
+            .filter(|g| g.nodes.iter().any(|&i| active[i as usize]))
+            .count();
         assert!(gripped > 0);
-        layers.pairs.clear();
-        let part = Part::of(&system, awake);
-        let layers = part.system.layers.as_ref().unwrap();
-        assert!(layers.friction_contacts.len() < gripped);
+        self_contact.pairs.clear();
+        let subdomain = Subdomain::of(&system, active);
+        let self_contact = subdomain.system.self_contact.as_ref().unwrap();
+        assert!(self_contact.friction_contacts.len() < gripped);
         assert!(
-            layers.friction_contacts.iter().flat_map(|g| &g.nodes).all(|&i| (i as usize) < part.nodes.len())
+            self_contact
+                .friction_contacts
+                .iter()
+                .flat_map(|g| &g.nodes)
+                .all(|&i| (i as usize) < subdomain.nodes.len())
         );
     });
 }
 
 #[test]
 fn what_stands_for_three_feels_a_third_of_what_carries_it() {
-    with_part(|mut system, x, awake| {
-        let mut part = Part::of(&system, awake.clone());
-        let own = part.pick(&x);
+    with_subdomain(|mut system, x, active| {
+        let mut subdomain = Subdomain::of(&system, active.clone());
+        let own = subdomain.pick(&x);
         let contact = |system: &mut System<'_>| -> Vec<Vec3> {
-            system.touch(&own);
+            system.update_contacts(&own);
             let all = system.gradient(&own);
-            (system.support, system.layers) = (None, None);
+            (system.body_contact, system.self_contact) = (None, None);
             system.touches.clear();
             all.iter().zip(system.gradient(&own)).map(|(a, rest)| a - rest).collect()
         };
-        let one = contact(&mut part.system);
-        let mut three = Part::of(&system, awake.clone()).standing_for(3);
+        let one = contact(&mut subdomain.system);
+        let mut three = Subdomain::of(&system, active.clone()).standing_for(3);
         let third = contact(&mut three.system);
         let most = one.iter().map(Vec3::norm).fold(0.0, f64::max);
         assert!(most > 0.0 && one.iter().zip(&third).all(|(a, b)| (a / 3.0 - b).norm() < 1e-9 * most));
         // What it has learnt of loads comes back in the forces of the whole.
         let before: Vec<f64> = system.loads.clone();
-        let friction =
-            |s: &System<'_>| s.layers.as_ref().unwrap().friction_contacts.iter().map(|g| g.load).sum::<f64>();
+        let friction = |s: &System<'_>| {
+            s.self_contact.as_ref().unwrap().friction_contacts.iter().map(|g| g.load).sum::<f64>()
+        };
         let loads = friction(&system);
         let mut whole = x.clone();
-        Part::of(&system, awake).standing_for(3).put_back(&own, &mut system, &mut whole);
+        Subdomain::of(&system, active).standing_for(3).put_back(&own, &mut system, &mut whole);
         assert!(system.loads.iter().zip(&before).all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs()));
         assert!(loads >= 0.0 && (friction(&system) - loads).abs() <= 1e-9 * loads);
     });

@@ -1,14 +1,13 @@
-//! Seams that cannot be meant as they are: between pins at two places, or with pairs that run
-//! against each other.
+//! Seams that cannot be meant as they are: between pins at two places, or with one side reversed.
 //!
-//! The threads of a seam are the lines between the two vertices of each of its pairs. Where the
-//! second side is turned round by mistake, they cross, and are longer than those of the opposite
-//! order. A seam that is twisted on purpose (a Möbius band) has crossing threads, too: one that is
-//! laid flat before it is sewn hardly longer ones, since a band is at least 1.7 times longer than
-//! it is wide (Schwartz 2023). So a seam is refused on a body alone, which no panel turns over on,
-//! and elsewhere named only if it does not close.
+//! The threads of a seam are the lines between the two vertices of each pair. If the second side is
+//! reversed by mistake, they cross and are longer than those of the opposite order. A seam that is
+//! twisted on purpose (a Möbius band) has crossing threads, too, but hardly longer ones if it
+//! starts flat, since a band is at least 1.7 times longer than it is wide (Schwartz 2023). So
+//! reversed seams are refused only on a body, where no panel is turned over. Elsewhere they are
+//! named only if the seam does not close.
 //!
-//! Cost: O(n log n) for the outlines; for a seam that goes all round the square of its pairs.
+//! Cost: O(n log n) for the outlines; for a closed seam, the square of its pairs.
 
 use super::StartError;
 use crate::scene::{Scene, Seam};
@@ -18,18 +17,18 @@ use toile_geometry::components::groups;
 
 type Vec3 = Vector3<f64>;
 
-/// How many times longer the threads of a reversed seam are at least. A band that is laid flat and
-/// sewn with a twist has at most 1.06.
+/// Least ratio of the thread lengths of a reversed seam to those of the opposite order. A flat band
+/// that is sewn with a twist has at most 1.06.
 const LONGER: f64 = 1.1;
 
-/// The same where it does not count how far the sides lie apart: edges at right angles may be sewn
-/// either way.
+/// The same where the distance of the sides is left out: edges at right angles may be sewn either
+/// way.
 const TURNED: f64 = 1.25;
 
-/// The same of sides that are alike but for their order.
+/// The same for sides that are equal except for their order.
 const MIRRORED: f64 = 4.0;
 
-/// Most pairs of a seam all round whose orders are compared.
+/// Greatest number of pairs of a closed seam whose orders are compared.
 const MOST_ROUND: usize = 2000;
 
 /// Refuses a seam between vertices that are pinned at two places.
@@ -49,7 +48,7 @@ pub(super) fn check_pins(scene: &Scene, join_gap: f64) -> Result<(), StartError>
     Ok(())
 }
 
-/// Refuses seams whose pairs run against each other.
+/// Refuses reversed seams.
 pub(super) fn check_order(scene: &Scene, start: &[Vec3]) -> Result<(), StartError> {
     let outlines = Outlines::of(scene);
     let reversed = |s: &Seam| {
@@ -69,9 +68,8 @@ pub(crate) fn probably_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
     scene.seams.iter().filter(is_turned).map(|s| s.name.clone()).collect()
 }
 
-/// Names of the seams whose sides lie like mirror images of what they are to be sewn to: as they
-/// start, and moved onto each other. One that is twisted on purpose, or whose sides start turned
-/// against each other, is not among them.
+/// Names of the seams that are reversed both at the start and with their sides moved onto each
+/// other. Seams that are twisted on purpose, or whose sides start rotated, are not among them.
 #[must_use]
 pub fn surely_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
     let outlines = Outlines::of(scene);
@@ -85,15 +83,15 @@ pub fn surely_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
 /// Mean lengths of the threads of a seam, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Threads {
-    /// As it is.
+    /// In the given order.
     listed: f64,
-    /// With one side turned round.
+    /// With one side reversed.
     turned: f64,
 }
 
 impl Threads {
-    /// Of a seam of two pairs or more; `laid` with its sides moved onto each other. Nothing where
-    /// the order does not tell: sides that run all round may be shifted along each other instead.
+    /// Of a seam of at least two pairs; `laid` with its sides moved onto each other. `None` where
+    /// the order does not decide, for closed sides may be shifted along each other instead.
     fn of(outlines: &Outlines, seam: &Seam, x: &[Vec3], laid: bool) -> Option<Self> {
         let (pairs, is_round) = outlines.in_order(seam);
         let n = pairs.len();
@@ -122,7 +120,7 @@ impl Threads {
 /// The outlines of a scene's pieces.
 struct Outlines<'s> {
     scene: &'s Scene,
-    /// The vertex that follows each on its outline; `u32::MAX` inside.
+    /// The next vertex of each on its outline; `u32::MAX` inside.
     next: Vec<u32>,
 }
 
@@ -139,8 +137,8 @@ impl<'s> Outlines<'s> {
         Self { scene, next }
     }
 
-    /// The pairs of a seam in the order in which its first side runs along its outline, and whether
-    /// it runs all round; as they are listed where that side is not of one outline.
+    /// The pairs of a seam in the order of its first side along the outline, and whether that side
+    /// is closed. They stay as listed where that side is not on one outline.
     fn in_order(&self, seam: &Seam) -> (Vec<[u32; 2]>, bool) {
         let mut pairs = seam.pairs.clone();
         let along = pairs.first().and_then(|p| self.round(p[0]));
@@ -150,7 +148,7 @@ impl<'s> Outlines<'s> {
         let place = |p: &[u32; 2]| along.get(&p[0]).copied().unwrap_or(0.0);
         pairs.sort_by(|p, q| place(p).total_cmp(&place(q)));
         let n = pairs.len();
-        // The way from each pair to the one before it, all round.
+        // The distance from each pair to the one before it, cyclically.
         let ways: Vec<f64> =
             (0..n).map(|i| (place(&pairs[i]) - place(&pairs[(i + n - 1) % n])).rem_euclid(length)).collect();
         let first = (0..n).fold(0, |best, i| if ways[i] > ways[best] { i } else { best });
@@ -159,8 +157,8 @@ impl<'s> Outlines<'s> {
         (pairs, n > 3 && ways[first] < 2.0 * second)
     }
 
-    /// How far along the outline from `first` each of its vertices lies, and the length of all of
-    /// it, m.
+    /// The distance of each vertex from `first` along the outline, and the length of the outline,
+    /// m.
     fn round(&self, first: u32) -> Option<(BTreeMap<u32, f64>, f64)> {
         let rest = |v: u32| self.scene.rest[v as usize];
         let (mut along, mut length, mut at) = (BTreeMap::new(), 0.0, first);

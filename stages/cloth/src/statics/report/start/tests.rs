@@ -7,9 +7,9 @@ use nalgebra::Vector2;
 /// All that is said of a scene's start, with a body that is the scene's own.
 fn told(scene: &Scene) -> Result<(), String> {
     let body = scene.body.as_ref().map(|b| crate::contact::body::Body::new(b.vertices.clone(), &b.triangles));
-    let skin = body.as_ref().map(|b| b as &dyn CollisionSurface);
+    let surface = body.as_ref().map(|b| b as &dyn CollisionSurface);
     let pieces = Pieces::new(scene);
-    let start = check::<StaticsError>(scene, skin, 5e-4).map_err(|e| e.to_string())?;
+    let start = check::<StaticsError>(scene, surface, 5e-4).map_err(|e| e.to_string())?;
     let crossings = crossings_at_start(scene, &pieces, &start).unwrap();
     if let Some(error) = crossing(scene, &pieces.panel, &start, &crossings) {
         return Err(error.to_string());

@@ -1,4 +1,4 @@
-//! Cloth that passes through cloth, or lies in it, where it starts.
+//! Checks the start for cloth that intersects or lies in cloth. Cost: O(n log n).
 
 use super::StartError;
 use crate::error::ClothError;
@@ -13,14 +13,14 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of a panel's area that may lie in cloth at the start: panels that touch along a line, or
-/// lap a little, come apart.
+/// Share of a panel's area that may lie in cloth at the start: panels that touch along a line or
+/// overlap a little can be separated.
 const MOST_LYING: f64 = 0.05;
 
 /// An edge and the triangle that it passes through.
 type Crossing = ([u32; 2], [u32; 3]);
 
-/// Crossings of a level before it is sewn that no order of layers resolves; none where they do not
+/// Crossings of a level before it is sewn that no order of layers resolves; empty where they do not
 /// matter.
 pub(crate) fn crossings_at_start(
     scene: &Scene,
@@ -33,24 +33,25 @@ pub(crate) fn crossings_at_start(
     let sheet = pieces.open_sheet(&cloths(scene))?;
     let tree = ClothTree::new(sheet.triangles(), start).sewing(pieces.point.clone());
     let layer = |&p: &u32| (p as usize).checked_sub(1).map_or(0, |k| scene.panels[k].layer);
-    let layers = SelfContact { order: pieces.panel.iter().map(layer).collect(), ..SelfContact::default() };
+    let self_contact =
+        SelfContact { order: pieces.panel.iter().map(layer).collect(), ..SelfContact::default() };
     let found = crossings(&tree, &pieces.panel, start);
-    Ok(found.into_iter().filter(|(e, t)| !layers.is_ordered(e, t)).collect())
+    Ok(found.into_iter().filter(|(e, t)| !self_contact.is_ordered(e, t)).collect())
 }
 
-/// How far panels are moved to look whether they cross where a vertex of one lies in another, m:
-/// more than lies in a plane by rounding.
+/// How far panels are moved to test whether they cross where a vertex of one lies in another, m:
+/// more than the rounding of positions.
 const NUDGE: f64 = 1e-7;
 
-/// Crossings, those of panels included that pass through each other exactly at vertices or along
-/// edges, as panels of one grid do: these cross whichever way they are moved a little, where panels
-/// that touch come apart one way.
+/// Crossings, with those of panels that pass through each other exactly at vertices or along edges,
+/// as panels of one grid do. Such panels cross whichever way they are moved a little, while panels
+/// that only touch separate one way.
 pub(crate) fn crossings(tree: &ClothTree, panel: &[u32], x: &[Vec3]) -> Vec<Crossing> {
     let found = tree.crossings(x);
     if !found.is_empty() || panel.iter().all(|p| *p == panel[0]) {
         return found;
     }
-    // Multiples of irrational numbers, so that no two panels are moved alike.
+    // Multiples of irrational numbers, so that any two panels are moved differently.
     let way = |k: u32| Vector3::new(0.819, 0.671, 0.549).map(|r: f64| (r * f64::from(k)).fract() * NUDGE);
     let moved = |side: f64| -> Vec<Vec3> { x.iter().zip(panel).map(|(p, k)| p + way(*k) * side).collect() };
     let panels = |(e, t): &Crossing| sorted([e[0], t[0]].map(|v| panel[v as usize]));
@@ -62,7 +63,7 @@ pub(crate) fn crossings(tree: &ClothTree, panel: &[u32], x: &[Vec3]) -> Vec<Cros
     ahead
 }
 
-/// Crossings of the start as an error that names the panels; nothing where there are none.
+/// The error of crossings at the start, which names the panels; `None` without crossings.
 pub(crate) fn crossing(
     scene: &Scene,
     panel: &[u32],
@@ -82,8 +83,7 @@ pub(crate) fn crossing(
     })
 }
 
-/// Refuses a panel of which more than a little is squeezed so narrow that its vertices lie in the
-/// edges opposite.
+/// Refuses a panel if a large part of it is so narrow that vertices lie in the opposite edges.
 pub(super) fn check_squeezed(
     scene: &Scene,
     pieces: &Pieces,
@@ -116,15 +116,15 @@ pub(super) fn check_squeezed(
     })
 }
 
-/// The area of a triangle and its height over its longest side, m² and m.
+/// The area of a triangle, m², and its height over its longest side, m.
 fn area_and_height([a, b, c]: &[Vec3; 3]) -> (f64, f64) {
     let area = 0.5 * (b - a).cross(&(c - a)).norm();
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
     (area, 2.0 * area / longest.max(f64::MIN_POSITIVE))
 }
 
-/// Refuses cloth of which more than a little lies in cloth: then neither the step that would part
-/// them nor a search for the first impact can tell which side each belongs to.
+/// Refuses cloth if a large part of it lies in cloth: then neither contact nor collision detection
+/// can tell which side each belongs to.
 pub(super) fn check_lying(
     scene: &Scene,
     pieces: &Pieces,
@@ -164,7 +164,7 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The entry of which there is most; the first of equals.
+/// The most frequent entry; the first one of equals.
 fn most<T: Copy>(found: &BTreeMap<[u32; 2], T>, much: impl Fn(&T) -> f64) -> Option<([u32; 2], T)> {
     let more = |best: Option<([u32; 2], T)>, (panels, what): (&[u32; 2], &T)| match best {
         Some(best) if much(&best.1) >= much(what) => Some(best),

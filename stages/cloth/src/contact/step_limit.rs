@@ -1,10 +1,12 @@
-//! How much of a step each node may make so that nothing passes through anything.
+//! Step limiting by continuous collision detection: how much of its move each node may make so that
+//! no pair collides.
 //!
-//! Pairs that would meet hold back only their own nodes; since that changes the motion of their
-//! neighbours, all pairs of a node that was held back are tested again, until no pair meets. If
-//! that does not settle in a few rounds, the whole step is shortened. What is returned has been
-//! tested: every pair keeps a share of its distance. Pairs that were found for longer moves do not
-//! answer for shorter ones: see [`hold_apart`].
+//! Method: the moves of the nodes of colliding pairs are shortened to a share of the time to
+//! impact. Since this changes the relative motion of neighbours, all pairs of these nodes are
+//! tested again, until no pair collides. If some still do after a few rounds, the whole step is
+//! shortened. So every pair keeps a share of its distance. Cost: one collision test per pair, and
+//! fewer in each later round. Limit: pairs that were found for the original moves may miss
+//! collisions of shortened ones: see [`limit_with_search`].
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -16,23 +18,23 @@ type Vec3 = Vector3<f64>;
 /// Rounds before the whole step is shortened.
 const ROUNDS: usize = 8;
 
-/// Searches of pairs for moves that were shortened, before the whole step is.
+/// Searches of pairs for shortened moves, before the whole step is shortened.
 const SEARCHES: usize = 8;
 
 /// Share of the time to impact that is used.
 const SAFETY: f64 = 0.9;
 
-/// Shortens `moves` so that no pair of `pairs` meets; the number of pairs that would have.
-pub fn limit(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
+/// Shortens `moves` so that none of `pairs` collides; returns how many would have.
+pub fn limit_step(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
     limit_or_stop(x, moves, pairs).0
 }
 
-/// The same; besides, to what share the whole step was shortened.
+/// The same; also returns the share to which the whole step was shortened.
 fn limit_or_stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64) {
     let mut suspects: Vec<Pair> = pairs.to_vec();
     let mut first = 0;
     for round in 0..ROUNDS {
-        let hits = hits(x, moves, &suspects);
+        let hits = impacts(x, moves, &suspects);
         if round == 0 {
             first = hits.len();
         }
@@ -52,13 +54,14 @@ fn limit_or_stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64)
     (first, stop(x, moves, pairs).1)
 }
 
-/// Shortens `moves` until none of the pairs that `seek` finds for them meets, of those that count;
-/// the pairs found last, and to what share the whole step was shortened: below 1, cloth that
-/// touches nothing was held back as well.
+/// Shortens `moves` until none of the pairs that `seek` finds for them collides, of those that
+/// count. Returns the pairs found last, and the share to which the whole step was shortened; below
+/// 1, cloth without contact was held back as well.
 ///
-/// What falls together meets nowhere until one of it is held back; so pairs are sought again for
-/// the moves that are left, unless `seek` says that those known hold for all shorter moves.
-pub fn hold_apart(
+/// Cloth that falls together does not collide until a part of it is held back. So pairs are sought
+/// again for the shortened moves, unless `seek` returns `None`: the known pairs are then valid for
+/// all shorter moves.
+pub fn limit_with_search(
     x: &[Vec3],
     moves: &mut [Vec3],
     mut pairs: Vec<Pair>,
@@ -82,11 +85,11 @@ pub fn hold_apart(
     (pairs, whole)
 }
 
-/// Ends the whole step before the first of `pairs` meets; how many would have, and the share that
-/// is left.
+/// Shortens the whole step to before the first collision of `pairs`; returns how many would have
+/// collided, and the share that is left.
 fn stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64) {
-    // Scaled as a whole, a step that is safe until some time is safe when it ends there.
-    let hits = hits(x, moves, pairs);
+    // A step that has no collision until some time has none if it is scaled to end there.
+    let hits = impacts(x, moves, pairs);
     let least = hits.iter().map(|(_, t)| *t).fold(1.0, f64::min);
     let share = if least < 1.0 { SAFETY * least } else { 1.0 };
     if share < 1.0 {
@@ -95,13 +98,13 @@ fn stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64) {
     (hits.len(), share)
 }
 
-/// The pairs that would meet.
-pub fn meet(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<Pair> {
-    hits(x, moves, pairs).into_iter().map(|(p, _)| p).collect()
+/// The pairs that would collide.
+pub fn colliding(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<Pair> {
+    impacts(x, moves, pairs).into_iter().map(|(p, _)| p).collect()
 }
 
-/// The pairs that would meet, and when.
-fn hits(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<(Pair, f64)> {
+/// The pairs that would collide, and their times of impact.
+fn impacts(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<(Pair, f64)> {
     let hit = |p: &Pair| impact(p, &p.at(x), &p.at(moves)).map(|t| (*p, t));
     pairs.par_iter().with_min_len(256).filter_map(hit).collect()
 }

@@ -1,17 +1,15 @@
-//! Knots: cloth that crosses itself in a few places, and that its contacts do not take out of
-//! itself.
+//! Intersection resolution for cloth that contact alone does not pull out of itself.
 //!
-//! Method: the contours along which it crosses itself are shortened (see `contour`). Where that
-//! leaves some, the nodes of what crosses, and the rings of nodes around them, move to the mean of
-//! their neighbours again and again (Laplacian smoothing, Field 1988), which lays a fold that is
-//! knotted flat. Then cloth comes to rest from there. Each try takes more rings. Cost: one more run
-//! from near rest a try.
+//! Method: the intersection contours are minimised (see `contour`). If crossings are left, their
+//! nodes and the rings of nodes around them are smoothed (Laplacian smoothing, Field 1988), which
+//! flattens a knotted fold. Then the level is relaxed again from there. Each try takes more rings.
+//! Cost: one more run from near rest a try. Limits: after the last try crossings may be left.
 
 use crate::mesh::Sheet;
-use crate::statics::drive::coarse_to_fine::Solve;
+use crate::statics::drive::coarse_to_fine::{LevelMesh, Solve};
 use crate::statics::drive::contour::uncross;
 use crate::statics::forces::system::System;
-use crate::statics::newton::patience::Patience;
+use crate::statics::newton::patience::{Patience, Shrinking};
 use crate::statics::newton::to_rest::NewtonOptions;
 use crate::statics::report::equilibrium::{LevelReport, Progress};
 use crate::statics::report::error::StaticsError;
@@ -19,82 +17,81 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Rings of nodes that are smoothed around what crosses, for each try.
+/// Rings of nodes that are smoothed around the crossings, for each try.
 const RINGS: [usize; 3] = [2, 4, 8];
 
-/// How often they move to the mean of their neighbours.
+/// Sweeps of smoothing a try.
 const SWEEPS: usize = 30;
 
-/// Steps in which some of the tangled nodes must come free; else they do not.
-const PATIENCE: usize = 25;
+/// Steps within which the number of intersecting nodes must fall; otherwise the run ends.
+const PATIENCE: Patience = Patience { steps: 25, share: 0.0 };
 
 impl Solve<'_> {
-    /// Runs one level, and where cloth that was sewn through itself stays knotted, smooths the
-    /// knots and runs it again.
-    pub(crate) fn run_free(
+    /// Relaxes a level. Where cloth that was sewn through itself still intersects itself, smooths
+    /// it and relaxes it again.
+    pub(crate) fn relax_uncrossed(
         &self,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
-        if !self.plan.rest.sew_through {
-            return self.run(system, sheet, layout, x, pace, &|_, _| false, progress);
+        if !self.plan.settings.sew_through {
+            return self.relax(mesh, system, x, options, &|_, _| false, progress);
         }
-        let mut report = self.run_until_stuck(system, sheet, layout, x, pace, progress)?;
+        let mut report = self.relax_until_stuck(mesh, system, x, options, progress)?;
         for rings in RINGS {
-            if !system.is_tangled() {
+            if !system.is_intersecting() {
                 break;
             }
-            if uncross(sheet, &self.plan.tree(sheet, x, false), &system.pinned, x) > 0 {
-                smooth(sheet, x, &around(system, sheet, rings));
+            let tree = self.plan.tree(mesh.k, mesh.sheet, x, false);
+            if uncross(mesh.sheet, &tree, &system.pinned, x) > 0 {
+                smooth(mesh.sheet, x, &around(system, mesh.sheet, rings));
             }
-            report = self.run_until_stuck(system, sheet, layout, x, pace, progress)?;
+            report = self.relax_until_stuck(mesh, system, x, options, progress)?;
         }
         Ok(report)
     }
 
-    /// Runs one level to rest, or until tangled nodes come free no more.
-    fn run_until_stuck(
+    /// Relaxes a level until it is at rest, or the number of intersecting nodes falls no more.
+    fn relax_until_stuck(
         &self,
+        mesh: LevelMesh<'_>,
         system: &mut System<'_>,
-        sheet: &Sheet,
-        layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
-        let patience = Patience::new((PATIENCE, 0.0));
+        let shrinking = Shrinking::new(PATIENCE);
         let is_stuck = |system: &System<'_>, _: &[Vec3]| {
-            let count = tangled(system);
-            !patience.goes_on(count as f64) && count > 0
+            let count = intersecting(system);
+            !shrinking.goes_on(count as f64) && count > 0
         };
-        self.run(system, sheet, layout, x, pace, &is_stuck, progress)
+        self.relax(mesh, system, x, options, &is_stuck, progress)
     }
 }
 
-/// How many nodes are tangled.
-fn tangled(system: &System<'_>) -> usize {
-    system.layers.as_ref().map_or(0, |l| l.tangled.iter().filter(|t| **t).count())
+/// How many nodes are intersecting.
+fn intersecting(system: &System<'_>) -> usize {
+    system.self_contact.as_ref().map_or(0, |c| c.intersecting.iter().filter(|t| **t).count())
 }
 
-/// The tangled nodes and so many rings of nodes around them, but for those that are pinned.
+/// The intersecting nodes and so many rings of nodes around them, without pinned nodes.
 fn around(system: &System<'_>, sheet: &Sheet, rings: usize) -> Vec<bool> {
-    let mut knotted = system.layers.as_ref().map_or_else(Vec::new, |l| l.tangled.clone());
+    let mut chosen = system.self_contact.as_ref().map_or_else(Vec::new, |c| c.intersecting.clone());
     for _ in 0..rings {
-        let inner = knotted.clone();
+        let inner = chosen.clone();
         for [a, b] in sheet.edges().iter().map(|e| e.vertices.map(|v| v as usize)) {
-            knotted[a] |= inner[b];
-            knotted[b] |= inner[a];
+            chosen[a] |= inner[b];
+            chosen[b] |= inner[a];
         }
     }
-    knotted.iter_mut().zip(&system.pinned).for_each(|(k, p)| *k &= !p);
-    knotted
+    chosen.iter_mut().zip(&system.pinned).for_each(|(c, p)| *c &= !p);
+    chosen
 }
 
-/// Moves the chosen nodes to the mean of their neighbours, again and again.
+/// Moves the chosen nodes to the mean of their neighbours, sweep by sweep.
 fn smooth(sheet: &Sheet, x: &mut [Vec3], chosen: &[bool]) {
     for _ in 0..SWEEPS {
         let mut sums = vec![(Vec3::zeros(), 0.0); x.len()];

@@ -1,4 +1,4 @@
-//! A scene's cloth on its body, sewn and ready for a step: what tests of single parts begin with.
+//! For tests: the system of a scene's sewn cloth on its body.
 #![allow(clippy::unwrap_used)]
 
 use crate::contact::body::Body;
@@ -12,9 +12,9 @@ use crate::statics::levels::pieces::Pieces;
 pub(crate) fn on_its_body(scene: &Scene, check: impl FnOnce(System<'_>, &Body, &Sheet)) {
     let worn = scene.body.as_ref().unwrap();
     let body = Body::new(worn.vertices.clone(), &worn.triangles);
-    let wearer = Collider { skin: &body, friction: worn.friction };
+    let collider = Collider { surface: &body, friction: worn.friction };
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&cloths(scene)).unwrap();
-    let system = assemble(scene, Some(wearer), &pieces, &sheet, false, Models::STATIC).unwrap();
+    let system = assemble(scene, Some(collider), &pieces, &sheet, false, Models::STATIC).unwrap();
     check(system, &body, &sheet);
 }

@@ -1,7 +1,8 @@
-//! The body as a solver sees it: two questions, asked for many points at once.
+//! The interface between solvers and a collider: distance queries and step limits for many points
+//! at once.
 //!
-//! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place
-//! behind [`CollisionSurface`].
+//! [`Body`](super::body::Body) implements it with a tree of its triangles; other collision schemes
+//! implement [`CollisionSurface`], too.
 
 use super::body::Body;
 use nalgebra::Vector3;
@@ -13,24 +14,24 @@ use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 
-/// Points that one task looks after.
+/// Points per parallel task.
 const CHUNK: usize = 64;
 
-/// A solid that cloth stays outside of. The answers must not depend on the number of threads.
+/// A solid that cloth stays outside of. The results must not depend on the number of threads.
 pub trait CollisionSurface: Send + Sync + std::fmt::Debug {
-    /// For each point the surface nearest to it, where it is nearer than the point's `within` (m),
-    /// inside or outside.
+    /// The nearest place of the surface for each point, inside or outside, where it is nearer than
+    /// the point's `within`, m.
     fn nearest(&self, points: &[Vec3], within: &[f64]) -> Vec<Option<Nearest>>;
 
-    /// Ends each move that would lead into the solid its `gap` (m) outside it. A point inside may
-    /// move as it likes.
+    /// Shortens each move that would lead into the solid, so that it ends its `gap` (m) outside.
+    /// Points inside the solid move freely.
     fn guard(&self, points: &[Vec3], moves: &mut [Vec3], gaps: &[f64]);
 
-    /// How far the solid reaches along a unit direction: the greatest product of its points with
-    /// it, m. Nothing where there is none.
+    /// The support function: the greatest product of its points with a unit direction, m. `None`
+    /// where it is empty.
     fn reach(&self, direction: &Vec3) -> Option<f64>;
 
-    /// Its sharp edges and corners, if it has any and knows of them.
+    /// Its sharp edges and corners, if it has any.
     fn sharp(&self) -> Option<Arc<Sharp>> {
         None
     }

@@ -1,8 +1,8 @@
-//! A pipeline's collision scheme as the engine's skin.
+//! A pipeline's collision scheme as a collision surface of the engine.
 
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
-use toile_cloth::contact::skin::CollisionSurface;
+use toile_cloth::contact::collision_surface::CollisionSurface;
 use toile_core::artifact::{BodyContact, Collide, Point3};
 use toile_geometry::facets::Facets;
 use toile_geometry::sharp::Sharp;

@@ -1,12 +1,13 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::contact::limit::limit;
+use crate::contact::step_limit::limit_step;
 use crate::mesh::Sheet;
 use crate::scene::generate;
 use proptest::prelude::*;
 use toile_geometry::cloth_tree::ClothTree;
 
-/// Two sheets of 25 nodes each, one so far over the other, and what may meet on the way of `moves`.
+/// Two sheets of 25 nodes each, one so far over the other, and the pairs that may collide in
+/// `moves`.
 fn two(apart: f64, moves: impl Fn(usize, &Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec3>, Vec<Pair>, ClothTree) {
     let one = generate::hang(4);
     let mut scene = one.clone();
@@ -26,10 +27,10 @@ fn two(apart: f64, moves: impl Fn(usize, &Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec3
     (x, moves, pairs, tree)
 }
 
-/// What the cloth does where some of it would meet; nothing where none does.
+/// The response where cloth would collide; `None` where none does.
 fn given(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair], held: &[bool]) -> Option<Vec<bool>> {
-    let meeting = meet(x, moves, pairs);
-    (!meeting.is_empty()).then(|| give_way(x, moves, pairs, meeting, held))
+    let meeting = colliding(x, moves, pairs);
+    (!meeting.is_empty()).then(|| respond(x, moves, pairs, meeting, held))
 }
 
 fn sum(moves: &[Vec3]) -> Vec3 {
@@ -74,9 +75,9 @@ fn layers_a_micrometre_apart_go_on_together_where_all_cloth_goes() {
     };
     let (x, wanted, pairs, tree) = two(1e-6, turned);
     let (mut ended, mut pushed) = (wanted.clone(), wanted.clone());
-    limit(&x, &mut ended, &pairs);
+    limit_step(&x, &mut ended, &pairs);
     given(&x, &mut pushed, &pairs, &[false; 50]).unwrap();
-    limit(&x, &mut pushed, &pairs);
+    limit_step(&x, &mut pushed, &pairs);
     assert_eq!(tree.crossings(&end(&x, &pushed)), vec![]);
     let left = |moves: &[Vec3]| sum(moves).norm() / sum(&wanted).norm();
     assert!(left(&pushed) > 0.9, "{} {}", left(&pushed), left(&ended));
@@ -96,7 +97,7 @@ proptest! {
             prop_assert!((0..50).all(|k| pushed[k] || moves[k] == before[k]));
         }
         let pairs = tree.pairs(&x, &moves, 1e-3);
-        limit(&x, &mut moves, &pairs);
+        limit_step(&x, &mut moves, &pairs);
         prop_assert_eq!(tree.crossings(&end(&x, &moves)), vec![]);
     }
 }

@@ -7,6 +7,7 @@ use crate::statics::drive::solve::{StaticEquilibrium, StaticsError};
 use crate::statics::factor::scalar::Precision;
 use crate::statics::levels::assemble::{Collider, assemble, cloths as fabrics};
 use crate::statics::levels::pieces::Pieces;
+use crate::statics::newton::state::Proof;
 use crate::statics::newton::to_rest::Outcome;
 
 const CELLS: u32 = 4;
@@ -18,15 +19,15 @@ const NODES: usize = 25;
 fn with_system(scene: &Scene, check: impl FnOnce(System<'_>, &ClothTree, Vec<Vec3>)) {
     let ball = scene.body.as_ref().unwrap();
     let body = Body::new(ball.vertices.clone(), &ball.triangles);
-    let wearer = Collider { skin: &body, friction: ball.friction };
+    let collider = Collider { surface: &body, friction: ball.friction };
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&fabrics(scene)).unwrap();
-    let mut system = assemble(scene, Some(wearer), &pieces, &sheet, false, Models::STATIC).unwrap();
-    system.layers.iter_mut().for_each(|l| l.crowded = true);
+    let mut system = assemble(scene, Some(collider), &pieces, &sheet, false, Models::STATIC).unwrap();
+    system.self_contact.iter_mut().for_each(|c| c.stacked = true);
     check(system, &ClothTree::new(sheet.triangles(), &scene.positions), scene.positions.clone());
 }
 
-fn pace() -> NewtonOptions {
+fn options() -> NewtonOptions {
     NewtonOptions {
         first: 0.05,
         longest: 1.0,
@@ -34,11 +35,10 @@ fn pace() -> NewtonOptions {
         speed: 1e-3,
         non_static: 0.0,
         farthest: 0.1,
-        prove: false,
-        rough: false,
-        yields: false,
+        proof: Proof::AnyStep,
+        skip_line_search: false,
+        holds_stopped: false,
         one_by_one: true,
-        long_proof: false,
         asleep: true,
         precision: Precision::Mixed,
     }
@@ -63,11 +63,11 @@ fn cloths_come_from_the_innermost_outwards() {
     with_system(&shuffled(&[3, 0, 2, 1]), |mut system, _, x| {
         assert_eq!(order(&system, &x), [1, 3, 2, 0]);
         // Without a body, from the lowest up.
-        system.support = None;
+        system.body_contact = None;
         assert_eq!(order(&system, &x), [1, 3, 2, 0]);
         // What is worn further in comes first, wherever it is.
         let layer = |sheet: usize| if sheet == 0 { 0 } else { 1 };
-        system.layers.as_mut().unwrap().order = (0..x.len()).map(|i| layer(i / NODES)).collect();
+        system.self_contact.as_mut().unwrap().order = (0..x.len()).map(|i| layer(i / NODES)).collect();
         assert_eq!(order(&system, &x), [0, 1, 3, 2]);
     });
 }
@@ -75,10 +75,10 @@ fn cloths_come_from_the_innermost_outwards() {
 #[test]
 fn what_hangs_together_by_thread_is_one_cloth() {
     with_system(&shuffled(&[0, 1, 2]), |mut system, _, x| {
-        system.threads = vec![crate::statics::forces::seam_force::SeamForce {
+        system.seam_forces = vec![crate::statics::forces::seam_force::SeamForce {
             nodes: [0, 2 * NODES as u32],
             force: 1.0,
-            soft: 1e-3,
+            softening: 1e-3,
         }];
         assert_eq!(cloths(&system).1, 2);
         // Sheet 1 lies lower than the middle of the other two, and comes first only where that is
@@ -88,19 +88,19 @@ fn what_hangs_together_by_thread_is_one_cloth() {
 }
 
 #[test]
-fn a_cloth_is_laid_on_what_holds_still() {
+fn a_cloth_comes_to_rest_on_pinned_cloth() {
     with_system(&generate::stack(2, CELLS), |mut system, tree, mut x| {
-        let around = Around { layout: &x.clone(), tree, pace: pace(), stop: &|| false };
-        let awake = |sheet: usize| -> Vec<bool> { (0..2 * NODES).map(|i| i / NODES == sheet).collect() };
+        let around = StackStart { layout: &x.clone(), tree, options: options(), stop: &|| false };
+        let active = |sheet: usize| -> Vec<bool> { (0..2 * NODES).map(|i| i / NODES == sheet).collect() };
         let mut last = Outcome::default();
         let mut watch = |_: &System<'_>, _: &[Vec3], o: &Outcome| {
             last = *o;
             ControlFlow::Continue(())
         };
-        assert!(around.settle(&mut system, &mut x, &awake(0), 2, &mut watch).unwrap().is_continue());
+        assert!(around.settle(&mut system, &mut x, &active(0), 2, &mut watch).unwrap().is_continue());
         let below = x.clone();
         assert_eq!(below[NODES..], around.layout[NODES..]);
-        assert!(around.settle(&mut system, &mut x, &awake(1), 1, &mut watch).unwrap().is_continue());
+        assert!(around.settle(&mut system, &mut x, &active(1), 1, &mut watch).unwrap().is_continue());
         assert_eq!(x[..NODES], below[..NODES]);
         assert!(last.at_rest && last.steps > 5 && last.steps < STEPS, "{last:?}");
         assert!(tree.crossings(&x).is_empty());
@@ -115,19 +115,19 @@ fn a_cloth_is_laid_on_what_holds_still() {
 #[test]
 fn a_caller_can_stop_between_two_steps() {
     with_system(&generate::stack(3, CELLS), |mut system, tree, mut x| {
-        let around = Around { layout: &x.clone(), tree, pace: pace(), stop: &|| false };
+        let around = StackStart { layout: &x.clone(), tree, options: options(), stop: &|| false };
         let mut left = 7;
         let mut watch = |_: &System<'_>, _: &[Vec3], _: &Outcome| {
             left -= 1;
             if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        assert!(lay(&mut system, &around, &mut x, &mut watch).unwrap().is_break());
+        assert!(start_one_by_one(&mut system, &around, &mut x, &mut watch).unwrap().is_break());
         assert_eq!(left, 0);
         // What the seven steps did is kept.
         assert!(x[0] != around.layout[0] && x[2 * NODES..] == around.layout[2 * NODES..]);
-        let around = Around { stop: &|| true, ..around };
+        let around = StackStart { stop: &|| true, ..around };
         let go_on = &mut |_: &System<'_>, _: &[Vec3], _: &Outcome| ControlFlow::Continue(());
-        assert!(matches!(lay(&mut system, &around, &mut x, go_on), Err(Halt::Stopped)));
+        assert!(matches!(start_one_by_one(&mut system, &around, &mut x, go_on), Err(Halt::Stopped)));
     });
 }
 
@@ -152,7 +152,7 @@ fn six_sheets_come_to_rest_in_order() {
 }
 
 #[test]
-fn a_pile_that_is_told_to_stop_says_so() {
+fn a_stack_that_is_stopped_returns_so() {
     let mut steps = 0;
     let stopped = StaticEquilibrium::default().solve(&generate::stack(6, CELLS), &mut |_| {
         steps += 1;
