@@ -25,9 +25,9 @@ pub(crate) fn verify(args: &VerifyArgs, streams: &mut Streams<'_>) -> u8 {
 
 fn refused(json: bool, e: &StageError, streams: &mut Streams<'_>) -> u8 {
     match (json, &e.hint) {
-        (true, _) => streams.say(
-            serde_json::json!({ "error": e.code.as_str(), "message": e.message, "hint": e.hint }),
-        ),
+        (true, _) => {
+            streams.say(serde_json::json!({ "error": e.code.as_str(), "message": e.message, "hint": e.hint }))
+        }
         (false, hint) => {
             streams.tell(format!("error: {}", e.message));
             hint.iter().for_each(|hint| streams.tell(format!("  help: {hint}")));
@@ -57,7 +57,9 @@ fn certified(args: &VerifyArgs) -> Result<(bool, Vec<String>), StageError> {
     write(&path, &text)?;
     let lines = match args.json {
         true => vec![text],
-        false => certificate.words().into_iter().chain([format!("certificate: {}", path.display())]).collect(),
+        false => {
+            certificate.words().into_iter().chain([format!("certificate: {}", path.display())]).collect()
+        }
     };
     Ok((certificate.holds(), lines))
 }

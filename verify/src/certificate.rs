@@ -105,7 +105,9 @@ impl Certificate {
         let mut lines: Vec<String> = self.checks.iter().map(line).collect();
         for (level, g) in &self.girths {
             let [cloth, body, ease] = [g.cloth_m, g.body_m, g.cloth_m - g.body_m].map(|m| m * 100.0);
-            lines.push(format!("told        {level}: {cloth:.1} cm of cloth around {body:.1} cm, ease {ease:.1} cm"));
+            lines.push(format!(
+                "told        {level}: {cloth:.1} cm of cloth around {body:.1} cm, ease {ease:.1} cm"
+            ));
         }
         if let Some(why) = &self.girths_not_judged {
             lines.push(format!("not judged  ease: {why}"));
@@ -148,7 +150,10 @@ impl Compared {
         let failing = self.checks.iter().filter(|c| c.verdict == Verdict::Fails);
         let mut lines: Vec<String> = failing.map(|c| format!("{} (compared)", line(c))).collect();
         let only = |names: &[String], which: &str| {
-            names.iter().map(|n| format!("told        panel \"{n}\" is in the {which} garment alone")).collect::<Vec<_>>()
+            names
+                .iter()
+                .map(|n| format!("told        panel \"{n}\" is in the {which} garment alone"))
+                .collect::<Vec<_>>()
         };
         lines.extend(only(&self.difference.only_first, "first"));
         lines.extend(only(&self.difference.only_second, "second"));

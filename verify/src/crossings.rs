@@ -5,9 +5,9 @@
 //! O(n log n + pairs).
 
 use toile_core::artifact::{Body, Garment, Point3};
+use toile_geometry::Vec3;
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::crossing::between_meshes;
-use toile_geometry::Vec3;
 
 /// Pairs of triangles of the garment that cross, lower number first, ascending.
 #[must_use]

@@ -85,7 +85,8 @@ fn garment_file(path: &Path) -> Result<PathBuf, StageError> {
     names.sort();
     let ending = |end: &str| names.iter().find(|n| n.to_ascii_lowercase().ends_with(end));
     let known = |name: &str| names.iter().find(|n| *n == name);
-    let found = known(FIRST[0]).or_else(|| ending(".glb")).or_else(|| known(FIRST[1])).or_else(|| ending(".obj"));
+    let found =
+        known(FIRST[0]).or_else(|| ending(".glb")).or_else(|| known(FIRST[1])).or_else(|| ending(".obj"));
     found.map(|n| path.join(n)).ok_or_else(|| {
         unreadable(format!("the folder \"{}\" holds no garment", path.display()))
             .hint("name the output folder of a run with a writer of models (`Glb()` or `GarmentObj()`), or a .glb or .obj file")
@@ -106,7 +107,8 @@ struct Reader {
 impl Reader {
     fn bytes(&mut self, role: &'static str, path: &Path) -> Result<Vec<u8>, StageError> {
         let bytes = toile_core::read_file(path).map_err(|e| {
-            unreadable(format!("\"{}\" cannot be read: {e}", path.display())).hint("look at the path and the file's rights")
+            unreadable(format!("\"{}\" cannot be read: {e}", path.display()))
+                .hint("look at the path and the file's rights")
         })?;
         self.inputs.push(Input::of(role, &path.display().to_string(), &bytes));
         Ok(bytes)
@@ -123,7 +125,9 @@ impl Reader {
             Some("svg") => SvgPattern { file, ..SvgPattern::default() }.run(&cx)?.0,
             _ => {
                 let what = format!("\"{file}\" is no pattern by its name");
-                return Err(unreadable(what).hint("name a pattern of GarmentCode (.json), a .dxf or an .svg file"));
+                return Err(
+                    unreadable(what).hint("name a pattern of GarmentCode (.json), a .dxf or an .svg file")
+                );
             }
         };
         let told = cx.take_remarks();
@@ -173,7 +177,8 @@ impl Reader {
         }
         let bytes = self.bytes("flat", &path)?;
         let pieces = toile_output::write::origin::flat(&bytes).map_err(|what| {
-            unreadable(format!("\"{}\": {what}", path.display())).hint("run the pipeline again, or take the file away")
+            unreadable(format!("\"{}\": {what}", path.display()))
+                .hint("run the pipeline again, or take the file away")
         })?;
         Ok(Some(pieces))
     }
@@ -195,7 +200,9 @@ pub fn subject(
     };
     let seams = match (pieces, garment.seams.is_empty()) {
         (_, false) => Ok(()),
-        (Some(_), true) => Err(format!("\"{FILE}\" tells no seams: run the pipeline again, or name the pattern with `--pattern`")),
+        (Some(_), true) => Err(format!(
+            "\"{FILE}\" tells no seams: run the pipeline again, or name the pattern with `--pattern`"
+        )),
         (None, true) => Err("no pattern was given: name one with `--pattern`".to_owned()),
     };
     Subject { garment, flat, seams, pattern: pattern.cloned(), body, faults }

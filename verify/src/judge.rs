@@ -137,8 +137,11 @@ fn on_pattern(
     limits: &Limits,
     found: &mut Judgement,
 ) -> Option<Vec<Option<Laid>>> {
-    let none =
-        [("panels_off_pattern", "panels", 0.0), ("outline_deviation", "m", limits.outline), ("holes", "holes", 0.0)];
+    let none = [
+        ("panels_off_pattern", "panels", 0.0),
+        ("outline_deviation", "m", limits.outline),
+        ("holes", "holes", 0.0),
+    ];
     let Some(pattern) = &subject.pattern else {
         found.skip(&none, "no pattern was given: name one with `--pattern`");
         return None;
@@ -158,7 +161,8 @@ fn on_pattern(
     let pieces = by_piece(&laid);
     let bare = (0..pattern.pieces.len()).filter(|k| !pieces.contains_key(k));
     let bare = bare.map(|k| pattern.pieces[k].name.as_str());
-    let mut words: Vec<String> = strange.map(|n| format!("panel \"{n}\" is no piece of the pattern")).collect();
+    let mut words: Vec<String> =
+        strange.map(|n| format!("panel \"{n}\" is no piece of the pattern")).collect();
     words.extend(bare.map(|n| format!("piece \"{n}\" is no panel of the garment")));
     found.judge("panels_off_pattern", words.len() as f64, "panels", 0.0, words.join("; "));
     let named = || garment.panels.iter().zip(&laid).filter_map(|(p, l)| Some((p.name.as_str(), l.as_ref()?)));
@@ -188,12 +192,7 @@ fn triangles(garment: &Garment, flat_known: bool, found: &mut Judgement) {
 }
 
 /// Judges cloth against the body; gives the collider where the body has an inside.
-fn on_body(
-    subject: &Subject,
-    garment: &Garment,
-    limits: &Limits,
-    found: &mut Judgement,
-) -> Option<Collider> {
+fn on_body(subject: &Subject, garment: &Garment, limits: &Limits, found: &mut Judgement) -> Option<Collider> {
     let none = [("body_crossings", "pairs", 0.0), ("body_depth", "m", limits.depth)];
     let wearer = match &subject.body {
         Ok(wearer) => wearer,

@@ -25,17 +25,25 @@ const ALIKE: f64 = 5e-3;
 const ROUNDS: usize = 8;
 /// Every so many points of a piece's outline are looked at.
 const EVERY: usize = 4;
+/// Outlines in equal parts that stay so far apart, in the mean, are not of one shape, metres.
+const UNLIKE: f64 = 0.03;
+/// Outlines whose lengths differ by this share are not of one shape.
+const LENGTHS: f64 = 0.05;
 
 /// A piece's outline as points, and where its corners are among them.
 struct Outline {
     points: Vec<Point2>,
     corners: Vec<usize>,
+    /// Corners and every few points between.
+    few: Vec<Point2>,
 }
 
 impl Outline {
     fn of(piece: &Piece) -> Self {
         let (points, corners) = piece.outer.points();
-        Self { points, corners }
+        let is_kept = |k: &usize| k % EVERY == 0 || corners.contains(k);
+        let few = (0..points.len()).filter(is_kept).map(|k| points[k]).collect();
+        Self { points, corners, few }
     }
 }
 
@@ -80,7 +88,7 @@ fn candidates(
     {
         return vec![here];
     }
-    let fit = |piece: usize| turns(&flat, &outlines[piece].points).into_iter().map(move |to| (piece, to));
+    let fit = |piece: usize| turns(&flat, &outlines[piece].few).into_iter().map(move |to| (piece, to));
     let tried = (0..outlines.len()).filter(|k| named.is_none_or(|n| n == *k));
     let mut all: Vec<Laid> = tried.flat_map(fit).map(|(piece, to)| laid(piece, to)).collect();
     all.retain(|l| l.deviation <= ALIKE);
@@ -90,9 +98,8 @@ fn candidates(
 
 /// Whether a mesh and a piece have one name; exporters replace blanks and add numbers.
 fn alike(piece: &str, mesh: &str) -> bool {
-    let plain = |s: &str| {
-        s.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect::<String>()
-    };
+    let plain =
+        |s: &str| s.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect::<String>();
     plain(piece) == plain(mesh)
 }
 
@@ -100,8 +107,7 @@ fn alike(piece: &str, mesh: &str) -> bool {
 fn turns(flat: &[Point2], piece: &[Point2]) -> Vec<Isometry2<f64>> {
     let (p, q) = (walked(flat), walked(piece));
     let length = |ring: &[Point2]| polyline_length(ring);
-    // Outlines of unlike length are not of one shape.
-    if (length(&p) / length(&q) - 1.0).abs() > 0.1 {
+    if (length(&p) / length(&q) - 1.0).abs() > LENGTHS {
         return Vec::new();
     }
     let centre = |ring: &[Point2]| ring.iter().map(|p| p.coords).sum::<Vector2<f64>>() / ring.len() as f64;
@@ -114,10 +120,12 @@ fn turns(flat: &[Point2], piece: &[Point2]) -> Vec<Isometry2<f64>> {
     };
     let spins: Vec<(f64, f64)> = (0..PARTS).map(spin).collect();
     let score: Vec<f64> = spins.iter().map(|s| s.0.hypot(s.1)).collect();
-    let best = score.iter().copied().fold(0.0, f64::max);
+    let spread =
+        |ring: &[Point2], c: Vector2<f64>| ring.iter().map(|p| (p.coords - c).norm_squared()).sum::<f64>();
+    let apart = |k: usize| (spread(&p, cp) + spread(&q, cq) - 2.0 * score[k]).max(0.0) / PARTS as f64;
     let is_peak = |k: &usize| {
         let (before, after) = (score[(k + PARTS - 1) % PARTS], score[(k + 1) % PARTS]);
-        score[*k] >= before && score[*k] > after && score[*k] >= 0.98 * best
+        score[*k] >= before && score[*k] > after && apart(*k) <= UNLIKE * UNLIKE
     };
     let placed = |k: usize| {
         let turn = UnitComplex::new(spins[k].1.atan2(spins[k].0));
@@ -183,8 +191,7 @@ fn closest(p: &Point2, ring: &[Point2]) -> Point2 {
 fn deviation(placed: &[Point2], outline: &Outline) -> f64 {
     let to = |p: &Point2, ring: &[Point2]| (p - closest(p, ring)).norm();
     let out = placed.iter().map(|p| to(p, &outline.points)).fold(0.0, f64::max);
-    let looked = outline.points.iter().step_by(EVERY).chain(outline.corners.iter().map(|c| &outline.points[*c]));
-    looked.map(|p| to(p, placed)).fold(out, f64::max)
+    outline.few.iter().map(|p| to(p, placed)).fold(out, f64::max)
 }
 
 /// The vertices along each edge: between those that are nearest to its ends.
@@ -224,12 +231,7 @@ fn first_choice(candidates: &[Vec<Laid>], pieces: usize) -> Vec<Option<usize>> {
 }
 
 /// Takes other pieces and turns as long as the ends of the seams come nearer together.
-fn improve(
-    garment: &Garment,
-    pattern: &Pattern,
-    candidates: &[Vec<Laid>],
-    chosen: &mut Vec<Option<usize>>,
-) {
+fn improve(garment: &Garment, pattern: &Pattern, candidates: &[Vec<Laid>], chosen: &mut Vec<Option<usize>>) {
     if candidates.iter().all(|c| c.len() < 2) {
         return;
     }
@@ -272,7 +274,8 @@ fn exchanges(
     let had = chosen[k].map(|c| candidates[k][c].piece);
     let mut one = chosen.to_vec();
     one[k] = Some(i);
-    let other = (0..chosen.len()).find(|o| *o != k && chosen[*o].is_some_and(|c| candidates[*o][c].piece == piece));
+    let other =
+        (0..chosen.len()).find(|o| *o != k && chosen[*o].is_some_and(|c| candidates[*o][c].piece == piece));
     let Some(other) = other else { return vec![one] };
     let swap = |(j, l): (usize, &Laid)| {
         (Some(l.piece) == had).then(|| {

@@ -14,7 +14,7 @@ const LEAST_QUALITY: f64 = 1e-9;
 pub struct Faults {
     /// Without area.
     pub degenerate: Vec<u32>,
-    /// With the vertices of one before.
+    /// With the vertices of one before in their panel.
     pub doubled: Vec<u32>,
     /// That run along a side the same way as their neighbour in their panel, or lie turned in the
     /// flat: by one of each pair.
@@ -31,14 +31,18 @@ pub fn faults(garment: &Garment, flat_known: bool) -> Faults {
     let welded: Vec<[u32; 3]> =
         garment.triangles.iter().map(|t| t.map(|v| garment.weld[v as usize])).collect();
     let mut found = Faults::default();
-    let mut seen = BTreeSet::new();
-    for (k, t) in garment.triangles.iter().enumerate() {
-        let mut key = welded[k];
-        key.sort_unstable();
-        if quality(garment, t) <= LEAST_QUALITY || key[0] == key[1] || key[1] == key[2] {
-            found.degenerate.push(k as u32);
-        } else if !seen.insert(key) {
-            found.doubled.push(k as u32);
+    for panel in &garment.panels {
+        // The corner of a pocket may be sewn onto a triangle of what it lies on.
+        let mut seen = BTreeSet::new();
+        for k in panel.triangles.clone() {
+            let mut key = welded[k];
+            key.sort_unstable();
+            let is_flat = quality(garment, &garment.triangles[k]) <= LEAST_QUALITY;
+            if is_flat || key[0] == key[1] || key[1] == key[2] {
+                found.degenerate.push(k as u32);
+            } else if !seen.insert(key) {
+                found.doubled.push(k as u32);
+            }
         }
     }
     let mut turned: BTreeSet<u32> = BTreeSet::new();

@@ -8,7 +8,9 @@
 
 use crate::laid::ByPiece;
 use serde::Serialize;
-use toile_core::artifact::{EdgeUse, Garment, GarmentSeam, Pattern, PatternSeam, Point3, SeamKind, SeamState};
+use toile_core::artifact::{
+    EdgeUse, Garment, GarmentSeam, Pattern, PatternSeam, Point3, SeamKind, SeamState,
+};
 
 /// Sides of a matched seam whose lengths differ by more than this share are gathered, as the
 /// pattern is sewn.
@@ -59,13 +61,11 @@ pub fn by_pattern(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> G
 
 /// The seams of the pattern as pairs of vertices, where their sides have as many.
 #[must_use]
-pub fn pairs(
-    garment: &Garment,
-    pattern: &Pattern,
-    laid: &ByPiece<'_>,
-) -> Vec<GarmentSeam> {
+pub fn pairs(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> Vec<GarmentSeam> {
     let length = |side: &[u32]| {
-        side.windows(2).map(|w| (garment.rest[w[0] as usize] - garment.rest[w[1] as usize]).norm()).sum::<f64>()
+        side.windows(2)
+            .map(|w| (garment.rest[w[0] as usize] - garment.rest[w[1] as usize]).norm())
+            .sum::<f64>()
     };
     let seam = |s: &PatternSeam| {
         let sides = sides(pattern, laid, s).ok()?;
@@ -78,7 +78,12 @@ pub fn pairs(
             (a - b).abs() > EASE * a.max(b)
         });
         let kind = if s.kind == SeamKind::Matched && unlike { SeamKind::Gathered } else { s.kind };
-        (!pairs.is_empty()).then(|| GarmentSeam { name: s.name.clone(), kind, pairs, state: SeamState::Closed })
+        (!pairs.is_empty()).then(|| GarmentSeam {
+            name: s.name.clone(),
+            kind,
+            pairs,
+            state: SeamState::Closed,
+        })
     };
     pattern.seams.iter().filter_map(seam).collect()
 }
@@ -88,13 +93,11 @@ pub fn pairs(
 pub fn ends_apart(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> f64 {
     let of = |s: &PatternSeam| {
         let Ok(sides) = sides(pattern, laid, s) else { return 0.0 };
-        let marks = |side: &[u32]| {
-            [0, side.len() / 2, side.len() - 1].map(|k| garment.positions[side[k] as usize])
-        };
+        let marks =
+            |side: &[u32]| [0, side.len() / 2, side.len() - 1].map(|k| garment.positions[side[k] as usize]);
         let first = marks(&sides[0]);
-        let apart = |other: &Vec<u32>| {
-            first.iter().zip(marks(other)).map(|(a, b)| (a - b).norm()).sum::<f64>()
-        };
+        let apart =
+            |other: &Vec<u32>| first.iter().zip(marks(other)).map(|(a, b)| (a - b).norm()).sum::<f64>();
         sides[1..].iter().map(apart).sum()
     };
     pattern.seams.iter().map(of).sum()
@@ -132,19 +135,11 @@ fn of_seam(
 }
 
 /// The sides of a seam as vertices.
-fn sides(
-    pattern: &Pattern,
-    laid: &ByPiece<'_>,
-    seam: &PatternSeam,
-) -> Result<Vec<Vec<u32>>, String> {
+fn sides(pattern: &Pattern, laid: &ByPiece<'_>, seam: &PatternSeam) -> Result<Vec<Vec<u32>>, String> {
     seam.sides.iter().map(|side| chain(pattern, laid, side)).collect()
 }
 
-fn chain(
-    pattern: &Pattern,
-    laid: &ByPiece<'_>,
-    side: &[EdgeUse],
-) -> Result<Vec<u32>, String> {
+fn chain(pattern: &Pattern, laid: &ByPiece<'_>, side: &[EdgeUse]) -> Result<Vec<u32>, String> {
     let mut vertices: Vec<u32> = Vec::new();
     for link in side {
         let (name, edge) = (&link.edge.panel, &link.edge.edge);

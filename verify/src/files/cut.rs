@@ -94,7 +94,10 @@ fn names(meshes: &FileMeshes, of: &[u32], count: usize) -> Vec<String> {
     }
     let called = |t: usize| {
         let name = |list: &[String], of: &[u32]| {
-            of.get(t).and_then(|k| list.get(*k as usize)).map(|n| n.trim().to_owned()).filter(|n| !n.is_empty())
+            of.get(t)
+                .and_then(|k| list.get(*k as usize))
+                .map(|n| n.trim().to_owned())
+                .filter(|n| !n.is_empty())
         };
         name(&meshes.names, &meshes.groups).or_else(|| name(&meshes.material_names, &meshes.materials))
     };
@@ -111,7 +114,9 @@ fn names(meshes: &FileMeshes, of: &[u32], count: usize) -> Vec<String> {
 /// What texture points are multiplied by, across and along, to be the flat shape in metres.
 fn scale(meshes: &FileMeshes, pattern: Option<&Pattern>, panels: usize) -> Result<(f64, f64), String> {
     if !meshes.texture.iter().all(Option::is_some) {
-        return Err("the flat shape is not known: the garment's file has no texture points on all triangles".into());
+        return Err(
+            "the flat shape is not known: the garment's file has no texture points on all triangles".into()
+        );
     }
     let flat = |[a, b, c]: &[Point2; 3]| (b - a).perp(&(c - a)) / 2.0;
     let corners = || meshes.texture.iter().flatten();

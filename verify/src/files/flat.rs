@@ -48,8 +48,9 @@ fn named(meshes: &FileMeshes, name: &str) -> Option<Vec<usize>> {
     // Writers of OBJ keep no blanks.
     let alike = |n: &&String| **n == name || **n == name.replace(' ', "_");
     let is_group: Vec<bool> = meshes.names.iter().map(|n| alike(&n)).collect();
-    let own: Vec<usize> =
-        (0..meshes.triangles.len()).filter(|k| is_group.get(meshes.groups[*k] as usize) == Some(&true)).collect();
+    let own: Vec<usize> = (0..meshes.triangles.len())
+        .filter(|k| is_group.get(meshes.groups[*k] as usize) == Some(&true))
+        .collect();
     (!own.is_empty()).then_some(own)
 }
 

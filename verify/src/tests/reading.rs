@@ -59,7 +59,10 @@ fn what_cannot_be_read_is_refused_by_name_and_remedy() {
     let at = |name: &str| dir.path().join(name);
     let shown = |name: &str| at(name).display().to_string();
     let (what, hint) = refused(&at("none.obj"));
-    assert_eq!(what, format!("\"{}\" cannot be read: No such file or directory (os error 2)", shown("none.obj")));
+    assert_eq!(
+        what,
+        format!("\"{}\" cannot be read: No such file or directory (os error 2)", shown("none.obj"))
+    );
     assert_eq!(hint, "look at the path and the file's rights");
     let (what, hint) = refused(dir.path());
     assert_eq!(what, format!("the folder \"{}\" holds no garment", dir.path().display()));
@@ -68,7 +71,9 @@ fn what_cannot_be_read_is_refused_by_name_and_remedy() {
         "name the output folder of a run with a writer of models (`Glb()` or `GarmentObj()`), or a .glb or .obj file"
     );
     std::fs::write(at("broken.glb"), b"glTF").unwrap();
-    assert!(refused(&at("broken.glb")).0.starts_with(&format!("\"{}\": it is no sound GLB", shown("broken.glb"))));
+    assert!(
+        refused(&at("broken.glb")).0.starts_with(&format!("\"{}\": it is no sound GLB", shown("broken.glb")))
+    );
     std::fs::write(at("huge.obj"), "v 0 0 0\nv 1e6 0 0\nv 0 1e6 0\nf 1 2 3\n").unwrap();
     let (what, hint) = refused(&at("huge.obj"));
     assert_eq!(
@@ -89,7 +94,8 @@ fn flat_pieces_of_another_garment_are_a_fault() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("result.obj"), obj(&Skirt::new(12, 8), 1.0)).unwrap();
     let panel = r#"{"name":"front","photo":null,"positions":[[0,0],[1,0],[0,1]],"pixels":[],"triangles":[[0,1,2]],"edges":[]}"#;
-    let origin = |panel: &str| std::fs::write(dir.path().join("origin.json"), format!("{{\"panels\":[{panel}]}}"));
+    let origin =
+        |panel: &str| std::fs::write(dir.path().join("origin.json"), format!("{{\"panels\":[{panel}]}}"));
     origin(panel).unwrap();
     let (certificate, _) = certify(&asked(dir.path())).unwrap();
     assert!(!certificate.holds());
@@ -99,7 +105,10 @@ fn flat_pieces_of_another_garment_are_a_fault() {
     let path = dir.path().join("origin.json");
     assert_eq!(
         what,
-        format!("\"{}\": \"origin.json\" is damaged: a triangle of panel \"front\" has no corners", path.display())
+        format!(
+            "\"{}\": \"origin.json\" is damaged: a triangle of panel \"front\" has no corners",
+            path.display()
+        )
     );
     assert_eq!(hint, "run the pipeline again, or take the file away");
 }

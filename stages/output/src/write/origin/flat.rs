@@ -54,8 +54,8 @@ pub fn flat(origin: &[u8]) -> Result<FlatPieces, String> {
     let count: usize = panels.iter().map(|p: &FlatPanel| p.positions.len()).sum();
     let mut seams = Vec::with_capacity(origins.seams.len());
     for s in origins.seams {
-        let kind = SeamKind::of(&s.kind, &s.figures)
-            .map_err(|e| damaged(format!("seam \"{}\": {e}", s.name)))?;
+        let kind =
+            SeamKind::of(&s.kind, &s.figures).map_err(|e| damaged(format!("seam \"{}\": {e}", s.name)))?;
         if s.pairs.iter().flatten().any(|v| *v as usize >= count) {
             return Err(damaged(format!("seam \"{}\" names a vertex that there is none of", s.name)));
         }
