@@ -297,7 +297,11 @@ fn strains(
         found.judge("outline_error", error, "1", limits.outline_error, words(&name));
     }
     let strained = most.map(|(name, _)| format!("most in panel \"{name}\"")).unwrap_or_default();
-    found.judge("strain_p99", free_p99, "1", limits.strain, strained);
+    let unexcused = match collider {
+        None if !(free_p99 <= limits.strain) => format!("{strained}; no body is known that may stretch it"),
+        _ => strained,
+    };
+    found.judge("strain_p99", free_p99, "1", limits.strain, unexcused);
     let (name, tight) = tightest.unwrap_or_default();
     let tight_words = if tight > 0.0 { words(&name) } else { String::new() };
     found.judge("tight_p99", tight, "1", limits.tight, tight_words);

@@ -55,8 +55,9 @@ pub fn lay(garment: &Garment, pattern: &Pattern, limits: &Limits) -> Vec<Option<
         .into_par_iter()
         .map(|k| candidates(garment, k, pattern, &outlines, limits))
         .collect();
-    let mut chosen = first_choice(&candidates, pattern.pieces.len());
-    improve(garment, pattern, &candidates, &mut chosen);
+    let search = Search { garment, pattern, candidates: &candidates };
+    let mut chosen = search.grown();
+    search.improve(&mut chosen);
     let pick = |(k, c): (usize, &Option<usize>)| c.map(|c| candidates[k][c].clone());
     chosen.iter().enumerate().map(pick).collect()
 }
@@ -210,79 +211,120 @@ fn edges(placed: &[Point2], vertices: &[u32], outline: &Outline) -> Vec<Vec<u32>
     (0..ends.len()).map(chain).collect()
 }
 
-/// The best fit of each panel that leaves every piece to one panel.
-fn first_choice(candidates: &[Vec<Laid>], pieces: usize) -> Vec<Option<usize>> {
-    let mut all: Vec<(f64, usize, usize)> = candidates
-        .iter()
-        .enumerate()
-        .flat_map(|(k, c)| c.iter().enumerate().map(move |(i, l)| (l.deviation, k, i)))
-        .collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut chosen = vec![None; candidates.len()];
-    let mut taken = vec![false; pieces];
-    for (_, panel, i) in all {
-        let piece = candidates[panel][i].piece;
-        if chosen[panel].is_none() && !taken[piece] {
-            chosen[panel] = Some(i);
-            taken[piece] = true;
-        }
-    }
-    chosen
+/// For each panel which of its candidates is taken.
+type Choice = Vec<Option<usize>>;
+
+/// The search among several ways that fit.
+struct Search<'a> {
+    garment: &'a Garment,
+    pattern: &'a Pattern,
+    candidates: &'a [Vec<Laid>],
 }
 
-/// Takes other pieces and turns as long as the ends of the seams come nearer together.
-fn improve(garment: &Garment, pattern: &Pattern, candidates: &[Vec<Laid>], chosen: &mut Vec<Option<usize>>) {
-    if candidates.iter().all(|c| c.len() < 2) {
-        return;
+impl Search<'_> {
+    fn apart(&self, chosen: &Choice) -> (f64, usize) {
+        let of =
+            |(k, c): (usize, &Option<usize>)| c.map(|c| &self.candidates[k][c]).map(|l| (l.piece, (k, l)));
+        let laid: ByPiece<'_> = chosen.iter().enumerate().filter_map(of).collect();
+        seams::ends_apart(self.garment, self.pattern, &laid)
     }
-    let apart = |chosen: &[Option<usize>]| {
-        let laid: ByPiece<'_> = chosen
-            .iter()
-            .enumerate()
-            .filter_map(|(k, c)| c.map(|c| &candidates[k][c]).map(|l| (l.piece, (k, l))))
-            .collect();
-        seams::ends_apart(garment, pattern, &laid)
-    };
-    let mut least = apart(chosen);
-    for _ in 0..ROUNDS {
-        let before = least;
-        for k in 0..candidates.len() {
-            for i in 0..candidates[k].len() {
-                for tried in exchanges(candidates, chosen, k, i) {
-                    let far = apart(&tried);
-                    if far < least - 1e-9 {
-                        (least, *chosen) = (far, tried);
+
+    fn piece(&self, chosen: &Choice, panel: usize) -> Option<usize> {
+        chosen[panel].map(|c| self.candidates[panel][c].piece)
+    }
+
+    /// The open panels' candidates on pieces that are free.
+    fn free(&self, chosen: &Choice) -> Vec<(usize, usize)> {
+        let taken: Vec<Option<usize>> = (0..chosen.len()).map(|k| self.piece(chosen, k)).collect();
+        let open = (0..chosen.len()).filter(|k| chosen[*k].is_none());
+        let of = |k: usize| (0..self.candidates[k].len()).map(move |i| (k, i));
+        open.flat_map(of).filter(|(k, i)| !taken.contains(&Some(self.candidates[*k][*i].piece))).collect()
+    }
+
+    /// All panels, laid one after another: the first is one that fits in the fewest ways, in each of
+    /// them; the next is always the one whose seams with those before are nearest to closed.
+    fn grown(&self) -> Choice {
+        let none: Choice = vec![None; self.candidates.len()];
+        let ways = |k: &usize| self.candidates[*k].len();
+        let first = (0..none.len()).filter(|k| ways(k) > 0).min_by_key(ways);
+        let Some(first) = first else { return none };
+        let from = |i: usize| {
+            let mut chosen = none.clone();
+            chosen[first] = Some(i);
+            self.grow(&mut chosen);
+            (self.apart(&chosen).0, chosen)
+        };
+        let all = (0..self.candidates[first].len()).map(from);
+        all.reduce(|a, b| if b.0 < a.0 { b } else { a }).map_or(none, |best| best.1)
+    }
+
+    fn grow(&self, chosen: &mut Choice) {
+        loop {
+            let free = self.free(chosen);
+            let (far, seams) = self.apart(chosen);
+            let mean = |&(k, i): &(usize, usize)| {
+                let mut tried = chosen.clone();
+                tried[k] = Some(i);
+                let (sum, count) = self.apart(&tried);
+                // Panels that no seam joins to those before come last, the best fit first.
+                match count > seams {
+                    true => (0, (sum - far) / (count - seams) as f64),
+                    false => (1, self.candidates[k][i].deviation),
+                }
+            };
+            let scored = free.iter().map(|c| (mean(c), *c));
+            let nearer = |a: &(u8, f64), b: &(u8, f64)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).is_lt();
+            let Some((_, (k, i))) = scored.reduce(|a, b| if nearer(&b.0, &a.0) { b } else { a }) else {
+                return;
+            };
+            chosen[k] = Some(i);
+        }
+    }
+
+    /// Takes other pieces and turns as long as the ends of the seams come nearer together.
+    fn improve(&self, chosen: &mut Choice) {
+        if self.candidates.iter().all(|c| c.len() < 2) {
+            return;
+        }
+        let mut least = self.apart(chosen).0;
+        for _ in 0..ROUNDS {
+            let before = least;
+            for k in 0..self.candidates.len() {
+                for i in 0..self.candidates[k].len() {
+                    for tried in self.exchanges(chosen, k, i) {
+                        let far = self.apart(&tried).0;
+                        if far < least - 1e-9 {
+                            (least, *chosen) = (far, tried);
+                        }
                     }
                 }
             }
-        }
-        if least >= before {
-            return;
+            if least >= before {
+                return;
+            }
         }
     }
-}
 
-/// The choices in which panel `k` lies as its candidate `i` says; who had that piece before takes
-/// the one that `k` had, in each way that fits.
-fn exchanges(
-    candidates: &[Vec<Laid>],
-    chosen: &[Option<usize>],
-    k: usize,
-    i: usize,
-) -> Vec<Vec<Option<usize>>> {
-    let piece = candidates[k][i].piece;
-    let had = chosen[k].map(|c| candidates[k][c].piece);
-    let mut one = chosen.to_vec();
-    one[k] = Some(i);
-    let other =
-        (0..chosen.len()).find(|o| *o != k && chosen[*o].is_some_and(|c| candidates[*o][c].piece == piece));
-    let Some(other) = other else { return vec![one] };
-    let swap = |(j, l): (usize, &Laid)| {
-        (Some(l.piece) == had).then(|| {
-            let mut both = one.clone();
-            both[other] = Some(j);
-            both
-        })
-    };
-    candidates[other].iter().enumerate().filter_map(swap).collect()
+    /// The choices in which panel `k` lies as its candidate `i` says; who had that piece before
+    /// takes the one that `k` had, in each way that fits.
+    fn exchanges(&self, chosen: &Choice, k: usize, i: usize) -> Vec<Choice> {
+        let piece = self.candidates[k][i].piece;
+        let had = self.piece(chosen, k);
+        let mut one = chosen.clone();
+        one[k] = Some(i);
+        let other = (0..chosen.len()).find(|o| *o != k && self.piece(chosen, *o) == Some(piece));
+        let Some(other) = other else {
+            // A panel that is taken off its piece for a free one leaves seams open that count no
+            // more.
+            return if had.is_none_or(|h| h == piece) { vec![one] } else { Vec::new() };
+        };
+        let swap = |(j, l): (usize, &Laid)| {
+            (Some(l.piece) == had).then(|| {
+                let mut both = one.clone();
+                both[other] = Some(j);
+                both
+            })
+        };
+        self.candidates[other].iter().enumerate().filter_map(swap).collect()
+    }
 }

@@ -88,19 +88,21 @@ pub fn pairs(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> Vec<Ga
     pattern.seams.iter().filter_map(seam).collect()
 }
 
-/// How far the ends and the middles of the sides are apart, summed over all seams, metres.
+/// How far the ends and the middles of the sides are apart, summed over the seams whose panels are
+/// all laid, metres; and how many seams those are.
 #[must_use]
-pub fn ends_apart(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> f64 {
+pub fn ends_apart(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> (f64, usize) {
     let of = |s: &PatternSeam| {
-        let Ok(sides) = sides(pattern, laid, s) else { return 0.0 };
+        let sides = sides(pattern, laid, s).ok()?;
         let marks =
             |side: &[u32]| [0, side.len() / 2, side.len() - 1].map(|k| garment.positions[side[k] as usize]);
         let first = marks(&sides[0]);
         let apart =
             |other: &Vec<u32>| first.iter().zip(marks(other)).map(|(a, b)| (a - b).norm()).sum::<f64>();
-        sides[1..].iter().map(apart).sum()
+        Some(sides[1..].iter().map(apart).sum::<f64>())
     };
-    pattern.seams.iter().map(of).sum()
+    let all: Vec<f64> = pattern.seams.iter().filter_map(of).collect();
+    (all.iter().sum(), all.len())
 }
 
 fn of_seam(
