@@ -45,6 +45,7 @@ fn certified(args: &VerifyArgs) -> Result<(bool, Vec<String>), StageError> {
     let asked = Asked {
         garment: args.garment.clone(),
         pattern: args.pattern.clone(),
+        seams: args.seams.clone(),
         body: args.body.clone(),
         compare: args.compare.clone(),
         unit: args.unit.map(|u| u.metres()),

@@ -18,7 +18,7 @@ const REST: &str =
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Input {
-    /// What it was read as: `garment`, `body`, `pattern`, `flat` or `compared`.
+    /// What it was read as: `garment`, `body`, `pattern`, `seams`, `flat` or `compared`.
     pub role: &'static str,
     /// Its path as it was named.
     pub file: String,

@@ -36,6 +36,8 @@ pub struct Asked {
     pub garment: PathBuf,
     /// A pattern: GarmentCode's JSON, DXF or SVG.
     pub pattern: Option<PathBuf>,
+    /// The seams of a DXF or SVG pattern, where a file of their own holds them.
+    pub seams: Option<PathBuf>,
     /// A body; that of the garment's file where none is named.
     pub body: Option<PathBuf>,
     /// A second garment of the same pattern, or the folder of its run.
@@ -52,7 +54,7 @@ pub struct Asked {
 /// A file that cannot be read, with its place and a remedy.
 pub fn certify(asked: &Asked) -> Result<(Certificate, PathBuf), StageError> {
     let mut reader = Reader::default();
-    let pattern = asked.pattern.as_deref().map(|p| reader.pattern(p)).transpose()?;
+    let pattern = asked.pattern.as_deref().map(|p| reader.pattern(p, asked.seams.as_deref())).transpose()?;
     let body = asked.body.as_deref().map(|p| reader.body(p)).transpose()?;
     let file = garment_file(&asked.garment)?;
     let subject = reader.subject("garment", &file, asked.unit, pattern.as_ref(), body.as_ref())?;
@@ -114,15 +116,19 @@ impl Reader {
         Ok(bytes)
     }
 
-    fn pattern(&mut self, path: &Path) -> Result<Pattern, StageError> {
+    fn pattern(&mut self, path: &Path, seams: Option<&Path>) -> Result<Pattern, StageError> {
         self.bytes("pattern", path)?;
+        if let Some(seams) = seams {
+            self.bytes("seams", seams)?;
+        }
+        let seams = seams.map(|s| s.display().to_string()).unwrap_or_default();
         let file = path.display().to_string();
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         let cx = Context::quiet();
         let pattern = match extension.as_deref() {
             Some("json") => GarmentCode { file }.run(&cx)?.0,
-            Some("dxf") => DxfPattern { file, ..DxfPattern::default() }.run(&cx)?.0,
-            Some("svg") => SvgPattern { file, ..SvgPattern::default() }.run(&cx)?.0,
+            Some("dxf") => DxfPattern { file, seams, ..DxfPattern::default() }.run(&cx)?.0,
+            Some("svg") => SvgPattern { file, seams, ..SvgPattern::default() }.run(&cx)?.0,
             _ => {
                 let what = format!("\"{file}\" is no pattern by its name");
                 return Err(

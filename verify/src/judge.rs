@@ -245,7 +245,9 @@ fn gaps(
 ) {
     let none = [("seam_gap", "m", limits.gap)];
     found.gaps = match (laid, &subject.pattern, &subject.seams) {
-        (Some(laid), Some(pattern), _) => seams::by_pattern(garment, pattern, &by_piece(laid)),
+        (Some(laid), Some(pattern), known) if known.is_err() || !pattern.seams.is_empty() => {
+            seams::by_pattern(garment, pattern, &by_piece(laid))
+        }
         (_, _, Ok(())) => seams::by_pairs(garment),
         (_, _, Err(why)) => return found.skip(&none, why),
     };
@@ -298,7 +300,7 @@ fn strains(
     }
     let strained = most.map(|(name, _)| format!("most in panel \"{name}\"")).unwrap_or_default();
     let unexcused = match collider {
-        None if !(free_p99 <= limits.strain) => format!("{strained}; no body is known that may stretch it"),
+        None if free_p99 > limits.strain => format!("{strained}; no body is known that may stretch it"),
         _ => strained,
     };
     found.judge("strain_p99", free_p99, "1", limits.strain, unexcused);

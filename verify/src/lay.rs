@@ -41,7 +41,7 @@ struct Outline {
 impl Outline {
     fn of(piece: &Piece) -> Self {
         let (points, corners) = piece.outer.points();
-        let is_kept = |k: &usize| k % EVERY == 0 || corners.contains(k);
+        let is_kept = |k: &usize| k.is_multiple_of(EVERY) || corners.contains(k);
         let few = (0..points.len()).filter(is_kept).map(|k| points[k]).collect();
         Self { points, corners, few }
     }

@@ -12,6 +12,9 @@ pub(crate) struct VerifyArgs {
     /// The pattern that it was sewn from: GarmentCode's .json, a .dxf or an .svg file
     #[arg(long, value_name = "FILE")]
     pub(crate) pattern: Option<PathBuf>,
+    /// The seams of a .dxf or .svg pattern, where a file of their own holds them
+    #[arg(long, value_name = "FILE", requires = "pattern")]
+    pub(crate) seams: Option<PathBuf>,
     /// The body that wears it, a .obj or .glb file [default: that of the garment's file]
     #[arg(long, value_name = "FILE")]
     pub(crate) body: Option<PathBuf>,

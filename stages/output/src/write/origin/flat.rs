@@ -63,3 +63,38 @@ pub fn flat(origin: &[u8]) -> Result<FlatPieces, String> {
     }
     Ok(FlatPieces { panels, seams })
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const PANEL: &str = r#"{"name":"front","photo":null,"positions":[[0,0],[1,0],[0,1]],"pixels":[],"triangles":[[0,1,2]],"edges":[]}"#;
+
+    fn read(seams: &str) -> Result<FlatPieces, String> {
+        flat(format!("{{\"panels\":[{PANEL}]{seams}}}").as_bytes())
+    }
+
+    #[test]
+    fn pieces_and_seams_come_back() {
+        let pieces =
+            read(r#","seams":[{"name":"dart","kind":"dart","figures":[],"pairs":[[1,2]]}]"#).unwrap();
+        assert_eq!(pieces.panels[0].positions[1], Point2::new(1.0, 0.0));
+        let dart = FlatSeam { name: "dart".into(), kind: SeamKind::Dart, pairs: vec![[1, 2]] };
+        assert_eq!(pieces.seams, [dart]);
+        assert!(read("").unwrap().seams.is_empty(), "a file of version 2 tells none");
+    }
+
+    #[test]
+    fn damage_is_named() {
+        let says = |seams: &str| read(seams).unwrap_err();
+        assert_eq!(
+            says(r#","seams":[{"name":"side","kind":"glued","figures":[],"pairs":[]}]"#),
+            "\"origin.json\" is damaged: seam \"side\": `kind` is \"glued\", which is none of its words"
+        );
+        assert_eq!(
+            says(r#","seams":[{"name":"side","kind":"matched","figures":[],"pairs":[[0,3]]}]"#),
+            "\"origin.json\" is damaged: seam \"side\" names a vertex that there is none of"
+        );
+    }
+}
