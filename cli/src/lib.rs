@@ -22,6 +22,7 @@ mod shell;
 mod terminal;
 mod trading;
 mod validate;
+mod verify;
 mod watch;
 mod why;
 
@@ -193,6 +194,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Stage { name, cache_dir, json } => cards::show(&name, cache_dir, json, registry, streams),
         Command::Explain(args) => explain::command::explain(&args, registry, streams),
         Command::Why(args) => why::why(&args, registry, streams),
+        Command::Verify(args) => verify::verify(&args, streams),
         Command::Cache(args) => cache::cache(&args, streams),
         Command::Lock(args) => lock::lock(&args, registry, streams),
         Command::Migrate(args) => migrate::run(&args, registry, streams),

@@ -14,4 +14,5 @@ mod plugin_ends;
 mod readme;
 mod remedies;
 mod sheet;
+mod verify;
 mod watch;

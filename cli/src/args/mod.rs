@@ -7,6 +7,7 @@ mod file;
 mod run;
 mod shared;
 mod trade;
+mod verify;
 
 pub(crate) use bench::{Bench, CostsArgs};
 pub(crate) use file::{
@@ -15,6 +16,7 @@ pub(crate) use file::{
 pub(crate) use run::{CacheArgs, ExplainArgs, RunArgs, WhyArgs};
 pub(crate) use shared::{CacheChoice, Overrides};
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
+pub(crate) use verify::VerifyArgs;
 
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -76,6 +78,8 @@ pub(crate) enum Command {
     Explain(ExplainArgs),
     /// Say what a run would do again and why, or where a triangle of a result comes from
     Why(WhyArgs),
+    /// Judge a finished garment of any program from its files, and write a certificate
+    Verify(VerifyArgs),
     /// Show the cache of results, make room in it or empty it
     Cache(CacheArgs),
     /// Keep what a pipeline is made of beside it, to run against with `run --locked`

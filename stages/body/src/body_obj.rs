@@ -188,6 +188,29 @@ impl BodyObj {
     }
 }
 
+/// The body of a mesh that stands upright, y up, metres: where it stands, faced outwards, with the
+/// landmarks and girths that its shape tells; without any where they cannot be found, such as with
+/// arms that lie on the trunk, which the second value names.
+///
+/// # Errors
+/// The mesh is not closed, or its triangles are not turned alike.
+pub fn body_of_mesh(
+    points: Vec<Point3>,
+    triangles: Vec<[u32; 3]>,
+) -> Result<(Body, Option<&'static str>), StageError> {
+    closed(&Topology::of(points.len(), &triangles), &points)?;
+    let triangles = turned_outwards(&points, triangles);
+    let (mut lo, mut hi) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
+    points.iter().for_each(|p| (lo, hi) = (lo.inf(p), hi.sup(p)));
+    let base = Vector3::new((lo.x + hi.x) / 2.0, lo.y, (lo.z + hi.z) / 2.0);
+    let centred: Vec<Point3> = points.iter().map(|p| p - base).collect();
+    let found = estimate(&centred, &triangles, hi.y - lo.y);
+    let missing = found.as_ref().err().copied();
+    let (marks, measurements) = found.unwrap_or_default();
+    let landmarks = marks.into_iter().map(|(name, p)| (name, p + base)).collect();
+    Ok((Body { positions: points, triangles, landmarks, measurements }, missing))
+}
+
 /// Refuses a mesh with holes or turned triangles.
 fn closed(t: &Topology, points: &[Point3]) -> Result<(), StageError> {
     let place = |edge: Option<[u32; 2]>| {

@@ -11,7 +11,7 @@ mod shape;
 mod skin;
 mod wearer;
 
-pub use body_obj::{BodyObj, Units, Up};
+pub use body_obj::{BodyObj, Units, Up, body_of_mesh};
 pub use limbs::bridge::bridged;
 pub use limbs::swing::Swing;
 pub use mannequin::Mannequin;

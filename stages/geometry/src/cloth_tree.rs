@@ -153,11 +153,14 @@ impl<V: BoundingVolume> ClothTree<V> {
     }
 
     /// Pairs of triangles of which an edge of one pierces the inside of the other at `x`, by exact
-    /// signs: their numbers as they were given, lower first, ascending.
+    /// signs: their numbers as they were given, lower first, ascending. Nodes that are sewn to each
+    /// other count as one.
     #[must_use]
     pub fn exact_crossings(&self, x: &[Vec3]) -> Vec<[u32; 2]> {
+        let nodes = |t: usize| self.triangles[t].map(|v| self.point[v as usize]);
+        let corners = |t: usize| self.triangles[t].map(|v| x[v as usize]);
         let crossing = |s: usize, t: usize, out: &mut Vec<_>| {
-            if crossing::cross(x, &self.triangles[s], &self.triangles[t]) {
+            if crossing::cross_at(&nodes(s), &corners(s), &nodes(t), &corners(t)) {
                 let (a, b) = (self.order[s], self.order[t]);
                 out.push([a.min(b), a.max(b)]);
             }

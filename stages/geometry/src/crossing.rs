@@ -97,18 +97,24 @@ fn lone_corner_first(t: &Corners, other: &Corners) -> Option<(Corners, bool)> {
 /// True where an edge of one triangle pierces the other.
 #[must_use]
 pub fn cross(positions: &[Vec3], a: &[u32; 3], b: &[u32; 3]) -> bool {
+    let corners = |t: &[u32; 3]| t.map(|i| positions[i as usize]);
+    cross_at(a, &corners(a), b, &corners(b))
+}
+
+/// The same of two triangles by their nodes and corners: nodes of equal numbers are joined, whether
+/// or not they are in the very same place.
+#[must_use]
+pub fn cross_at(a: &[u32; 3], pa: &Corners, b: &[u32; 3], pb: &Corners) -> bool {
     let shared = a.iter().filter(|i| b.contains(i)).count();
     // With two nodes in common every edge of one shares a node with the other.
     if shared > 1 {
         return false;
     }
-    let corners = |t: &[u32; 3]| t.map(|i| positions[i as usize]);
-    let (pa, pb) = (corners(a), corners(b));
-    if !pa.iter().chain(&pb).all(|p| p.iter().all(|x| x.is_finite())) {
+    if !pa.iter().chain(pb).all(|p| p.iter().all(|x| x.is_finite())) {
         return false;
     }
-    Aabb::fit(&pa).near(&Aabb::fit(&pb), 0.0)
-        && (any_edge_pierces(a, &pa, b, &pb) || any_edge_pierces(b, &pb, a, &pa))
+    Aabb::fit(pa).near(&Aabb::fit(pb), 0.0)
+        && (any_edge_pierces(a, pa, b, pb) || any_edge_pierces(b, pb, a, pa))
 }
 
 fn any_edge_pierces(a: &[u32; 3], pa: &Corners, b: &[u32; 3], pb: &Corners) -> bool {

@@ -6,9 +6,9 @@ mod on_body;
 mod parts;
 mod quality;
 mod shortfalls;
-mod tight;
+pub mod tight;
 
-pub use quality::Measure;
+pub use quality::{Measure, panel_figures};
 
 use toile_core::Registry;
 use toile_core::artifact::Garment;

@@ -119,7 +119,10 @@ fn drawn_in(garment: &Garment) -> BTreeSet<u32> {
 
 /// Figures of each panel; what is `tight` counts as long and as large as it was cut, and so does an
 /// edge that an elastic band draws in.
-fn panel_figures(
+///
+/// # Errors
+/// A panel has no area or no outline.
+pub fn panel_figures(
     garment: &Garment,
     tight: Option<&Tight>,
 ) -> Result<BTreeMap<String, PanelFigures>, StageError> {

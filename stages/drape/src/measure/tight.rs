@@ -35,7 +35,7 @@ struct Edge {
 }
 
 /// The edges of a garment, and how far the body stretches each triangle.
-pub(super) struct Tight {
+pub struct Tight {
     edges: Vec<Edge>,
     /// By the vertices of the taut triangles: the greatest stretch, as a strain.
     taut: BTreeMap<[u32; 3], f64>,
@@ -43,7 +43,7 @@ pub(super) struct Tight {
 
 impl Tight {
     /// Of a garment on a collider's body; nothing is taut without one.
-    pub(super) fn of(garment: &Garment, collider: Option<&Collider>) -> Self {
+    pub fn of(garment: &Garment, collider: Option<&Collider>) -> Self {
         let on = on_body(garment, collider);
         let strains: Vec<f64> = garment.stretches().into_iter().map(|s| s - 1.0).collect();
         let is_taut = taut_triangles(garment, &on, &strains);
@@ -66,29 +66,29 @@ impl Tight {
 
     /// Whether the body stretches a triangle with these vertices, as far as its area tells: it is
     /// stretched in both directions by no more than its greatest stretch, or drawn smaller by it.
-    pub(super) fn stretches_triangle(&self, vertices: &[u32; 3], flat: f64, now: f64) -> bool {
+    pub fn stretches_triangle(&self, vertices: &[u32; 3], flat: f64, now: f64) -> bool {
         let within = |s: &f64| now / flat <= (1.0 + s).powi(2) && now / flat >= 1.0 - s;
         self.taut.get(vertices).is_some_and(within)
     }
 
     /// Whether the body stretches the cloth at an edge.
-    pub(super) fn stretches_edge(&self, [a, b]: [u32; 2]) -> bool {
+    pub fn stretches_edge(&self, [a, b]: [u32; 2]) -> bool {
         let key = [a.min(b), a.max(b)];
         self.edges.binary_search_by_key(&key, |e| e.vertices).is_ok_and(|k| self.edges[k].taut)
     }
 
     /// The 99th percentile of the strain of the edges where the cloth is taut.
-    pub(super) fn taut(&self) -> f64 {
+    pub fn taut(&self) -> f64 {
         p99(self.edges.iter().filter(|e| e.taut).map(|e| e.strain))
     }
 
     /// The 99th percentile of the strain of all edges, where those that are taut have none.
-    pub(super) fn rest(&self) -> f64 {
+    pub fn rest(&self) -> f64 {
         p99(self.edges.iter().map(|e| if e.taut { 0.0 } else { e.strain }))
     }
 
     /// The panel that the body stretches most, and by how much (99th percentile of its taut edges).
-    fn tightest<'g>(&self, garment: &'g Garment) -> Option<(&'g str, f64)> {
+    pub fn tightest<'g>(&self, garment: &'g Garment) -> Option<(&'g str, f64)> {
         let of = |p: &'g GarmentPanel| {
             let mine = |e: &&Edge| e.taut && p.vertices.contains(&(e.vertices[0] as usize));
             (p.name.as_str(), p99(self.edges.iter().filter(mine).map(|e| e.strain)))

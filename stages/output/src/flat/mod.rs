@@ -29,7 +29,7 @@ mod woven;
 
 pub use arap::Arap;
 pub use dart::Darts;
-pub use file::PiecesBy;
+pub use file::{FileMeshes, PiecesBy, file_meshes};
 pub use flattened::Care;
 pub use garment3d::{FileUnit, FlatShape, Garment3d};
 pub use lscm::Lscm;

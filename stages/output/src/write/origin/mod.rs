@@ -1,14 +1,16 @@
 //! `Origin`: where every triangle of the garment comes from, for `toile why RESULT --face N`.
 //!
 //! Written beside the results as `origin.json`: for each panel its flat vertices, their pixels in
-//! the photo, the triangles, and the named edges of its outline. [`trace`] reads it back together
-//! with a result. Cost: one pass over the garment. Limit: the result's triangles must stand in the
+//! the photo, the triangles, and the named edges of its outline; and which vertices the seams join.
+//! [`trace`] reads it back together with a result, [`flat`] gives what it says of the flat pieces. Cost: one pass over the garment. Limit: the result's triangles must stand in the
 //! garment's order, as the writers of this crate leave them; where the counts say otherwise the
 //! trace is refused.
 
+mod flat;
 mod result;
 mod trace;
 
+pub use flat::{FlatPanel, FlatPieces, FlatSeam, flat};
 pub use trace::{Trace, trace};
 
 use crate::texture::of_panel;
@@ -24,7 +26,7 @@ pub const FILE: &str = "origin.json";
 /// it.
 #[stage(
     role = Writer,
-    version = 2,
+    version = 3,
     source = "none",
     example = "Origin()",
     contracts(Deterministic, ThreadInvariant)
@@ -51,6 +53,20 @@ impl Origin {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Origins {
     pub(super) panels: Vec<PanelOrigin>,
+    /// Seams; none in files of version 2 and before.
+    #[serde(default)]
+    pub(super) seams: Vec<SeamOrigin>,
+}
+
+/// One seam.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct SeamOrigin {
+    pub(super) name: String,
+    /// Its kind's word and figures.
+    pub(super) kind: String,
+    pub(super) figures: Vec<f64>,
+    /// Vertices that are sewn together, counted through all panels in their order.
+    pub(super) pairs: Vec<[u32; 2]>,
 }
 
 /// One panel, in the garment's order.
@@ -109,5 +125,14 @@ fn origins(garment: &Garment, panels: Option<&Set<Panel>>, photos: Option<&Set<P
             edges: flat.map(chains).unwrap_or_default(),
         }
     };
-    Origins { panels: garment.panels.iter().map(of).collect() }
+    let seam = |s: &GarmentSeam| SeamOrigin {
+        name: s.name.clone(),
+        kind: s.kind.word().to_owned(),
+        figures: s.kind.figures(),
+        pairs: s.pairs.clone(),
+    };
+    Origins {
+        panels: garment.panels.iter().map(of).collect(),
+        seams: garment.seams.iter().map(seam).collect(),
+    }
 }

@@ -140,7 +140,8 @@ mod tests {
     }
 
     fn origin() -> Vec<u8> {
-        serde_json::to_vec(&Origins { panels: vec![square("front"), square("back")] }).unwrap()
+        serde_json::to_vec(&Origins { panels: vec![square("front"), square("back")], seams: Vec::new() })
+            .unwrap()
     }
 
     const OBJ: &str = "v 0 0 0\ng front\nf 1 2 3\nf 1 3 4\ng back\nf 1 2 3\nf 1 3 4\ng body\nf 1 2 3\n";

@@ -1,0 +1,39 @@
+//! Whether a finished garment is sound, judged from its files alone.
+//!
+//! ```text
+//! files --files--> Subject --judge--> Judgement --certificate--> certificate.json, words
+//! ```
+//!
+//! - [`files`]: a garment, its body and its pattern from files, by the readers of the stages.
+//! - [`judge`]: the checks. [`mesh`] looks at triangles, [`crossings`] at cloth through cloth and
+//!   body by exact signs, [`lay`] lays panels on the pieces of a pattern, [`seams`] measures the
+//!   gaps of seams, [`strain`] holds panels against their flat pieces.
+//! - [`compare`]: two garments of one pattern side by side.
+//! - [`certificate`]: what is written, and its words.
+//!
+//! Nothing that a run says of itself is believed: of a run's folder the garment, the body and the
+//! flat pieces are read, no figure. Every sum runs in a fixed order, so that the result does not
+//! depend on the number of threads. Limit: whether the garment is at rest is not judged; forces
+//! need the fabric, which no file of a garment tells.
+
+pub mod certificate;
+pub mod compare;
+pub mod crossings;
+pub mod files;
+pub mod judge;
+pub mod laid;
+pub mod lay;
+pub mod limits;
+mod loops;
+pub mod mesh;
+pub mod seams;
+pub mod strain;
+pub mod subject;
+
+#[cfg(test)]
+mod tests;
+
+pub use certificate::{Certificate, Input};
+pub use judge::{Check, Judgement, Verdict, judge};
+pub use limits::Limits;
+pub use subject::Subject;
