@@ -3,10 +3,10 @@
 //! Method: a panel whose name is a piece's, and whose outline lies on it, stays where it is.
 //! Otherwise both outlines are walked in equal parts; for each start the best turn and shift are
 //! known in closed form (Procrustes, two dimensions), and the best starts are refined by closest
-//! points (Besl, McKay 1992). Where several pieces or turns fit alike (left and right, a rectangle),
-//! those are taken that bring the ends of the seams nearest together in space. Cost: about a
-//! millisecond a panel and piece. Limits: panels are not mirrored one by one; a panel of another
-//! shape than every piece is not laid.
+//! points (Besl, McKay 1992). Where several pieces or turns fit alike (left and right, a
+//! rectangle), those are taken that bring the ends of the seams nearest together in space. Cost:
+//! about a millisecond a panel and piece. Limits: panels are not mirrored one by one; a panel of
+//! another shape than every piece is not laid.
 
 use crate::laid::{ByPiece, Laid};
 use crate::limits::Limits;
@@ -241,8 +241,8 @@ impl Search<'_> {
         open.flat_map(of).filter(|(k, i)| !taken.contains(&Some(self.candidates[*k][*i].piece))).collect()
     }
 
-    /// All panels, laid one after another: the first is one that fits in the fewest ways, in each of
-    /// them; the next is always the one whose seams with those before are nearest to closed.
+    /// All panels, laid one after another: the first is one that fits in the fewest ways, in each
+    /// of them; the next is always the one whose seams with those before are nearest to closed.
     fn grown(&self) -> Choice {
         let none: Choice = vec![None; self.candidates.len()];
         let ways = |k: &usize| self.candidates[*k].len();

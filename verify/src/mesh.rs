@@ -1,7 +1,8 @@
 //! What is wrong with triangles as such, by joined vertices.
 //!
 //! Method: sides are sorted by their ends. Within a panel two triangles that share a side must run
-//! along it in opposite ways. A hole of three sides is a triangle that is missing. Cost: O(n log n).
+//! along it in opposite ways. A hole of three sides is a triangle that is missing. Cost: O(n log
+//! n).
 
 use std::collections::BTreeSet;
 use toile_core::artifact::Garment;

@@ -233,7 +233,8 @@ impl Reader {
 
 fn heading(title: &str) -> Option<Section> {
     let mut words = title.splitn(3, ' ');
-    let (stage, kind) = (words.next()?.to_owned(), words.next()?.replace('_', " "));
+    let mut word = || words.next().filter(|word| !word.is_empty());
+    let (stage, kind) = (word()?.to_owned(), word()?.replace('_', " "));
     let entry = words.next().unwrap_or("").to_owned();
     Some(Section { stage, kind, entry, measures: Vec::new(), surface: None, digest: String::new() })
 }
@@ -297,6 +298,14 @@ mod tests {
 
     fn refused(text: &str) -> String {
         parse(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_heading_names_a_stage_and_a_kind() {
+        for heading in ["[ ]", "[]", "[Otsu]", "[Otsu ]", "[ mask]"] {
+            assert_eq!(refused(heading), "line 1: a heading is `[STAGE KIND NAME]`", "{heading}");
+        }
+        assert_eq!(parse("[Otsu mask]").unwrap().sections[0].title(), "Otsu mask");
     }
 
     #[test]

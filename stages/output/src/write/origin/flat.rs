@@ -57,7 +57,7 @@ pub fn flat(origin: &[u8]) -> Result<FlatPieces, String> {
         let kind =
             SeamKind::of(&s.kind, &s.figures).map_err(|e| damaged(format!("seam \"{}\": {e}", s.name)))?;
         if s.pairs.iter().flatten().any(|v| *v as usize >= count) {
-            return Err(damaged(format!("seam \"{}\" names a vertex that there is none of", s.name)));
+            return Err(damaged(format!("seam \"{}\" names a point that there is none of", s.name)));
         }
         seams.push(FlatSeam { name: s.name, kind, pairs: s.pairs });
     }
@@ -94,7 +94,7 @@ mod tests {
         );
         assert_eq!(
             says(r#","seams":[{"name":"side","kind":"matched","figures":[],"pairs":[[0,3]]}]"#),
-            "\"origin.json\" is damaged: seam \"side\" names a vertex that there is none of"
+            "\"origin.json\" is damaged: seam \"side\" names a point that there is none of"
         );
     }
 }

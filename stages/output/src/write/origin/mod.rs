@@ -2,9 +2,10 @@
 //!
 //! Written beside the results as `origin.json`: for each panel its flat vertices, their pixels in
 //! the photo, the triangles, and the named edges of its outline; and which vertices the seams join.
-//! [`trace`] reads it back together with a result, [`flat`] gives what it says of the flat pieces. Cost: one pass over the garment. Limit: the result's triangles must stand in the
-//! garment's order, as the writers of this crate leave them; where the counts say otherwise the
-//! trace is refused.
+//! [`trace`] reads it back together with a result, [`flat`] gives what it says of the flat pieces.
+//! Cost: one pass over the garment. Limit: the result's triangles must stand in the garment's
+//! order, as the writers of this crate leave them; where the counts say otherwise the trace is
+//! refused.
 
 mod flat;
 mod result;

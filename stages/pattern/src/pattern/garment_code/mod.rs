@@ -6,9 +6,11 @@
 //! [`stitches`] seams; what is beyond repair is a [`damage`]. Cost: some milliseconds a panel.
 
 mod damage;
+mod inside_out;
 mod json;
 mod panel;
 mod read;
+mod stitch;
 mod stitches;
 #[cfg(test)]
 mod tests;
@@ -35,6 +37,7 @@ use toile_core::prelude::*;
 /// be. Other damage is refused by panel, edge and place, all of it at once.
 #[stage(
     role = Reader,
+    version = 2,
     source = "Korosteleva and Sorkine-Hornung 2023, pygarment 2.0",
     example = "GarmentCode(file: \"shirt_specification.json\")",
     contracts(Deterministic, ThreadInvariant)
@@ -109,7 +112,7 @@ fn pattern(bytes: &[u8], name: &str) -> Result<(Pattern, Remarks), Vec<Damage>> 
     if !faults.is_empty() {
         return Err(faults);
     }
-    let seams = stitches::seams(&file.stitches, &file.panels, &pieces, &mut told).map_err(one)?;
+    let seams = stitches::seams(&file.stitches, &file.panels, &mut pieces, &mut told).map_err(one)?;
     let pattern =
         Pattern { name: name.to_owned(), pieces: pieces.into_iter().map(|m| m.piece).collect(), seams };
     let remedy = "draw the panel again; each edge needs length, and each loop area";

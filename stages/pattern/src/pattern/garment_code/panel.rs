@@ -251,7 +251,7 @@ fn simple(raw: &RawPanel, links: &[Link], outer: &PatternLoop, unit: f64) -> Res
 }
 
 /// The loop seen from the other side: x mirrored, which makes a clockwise one counter-clockwise.
-fn mirrored(l: &PatternLoop) -> PatternLoop {
+pub(super) fn mirrored(l: &PatternLoop) -> PatternLoop {
     let to = |p: Point2| Point2::new(-p.x, p.y);
     let edge = |e: &PieceEdge| PieceEdge { name: e.name.clone(), curve: e.curve.moved(to, true) };
     PatternLoop {

@@ -10,11 +10,13 @@
 //!   against each other.
 //!
 //! In 55 files of GarmentCode and its forerunner none of the 1519 stitches is one of these.
-//! Cost: stitches squared.
+//! Panels that stand inside out are turned over before (`inside_out`). Cost: stitches squared.
 
 use super::damage::Damage;
+use super::inside_out::{inside_out, turned_over};
 use super::panel::Made;
 use super::read::{RawPanel, RawStitch};
+use super::stitch::{Stitch, leaning, shortest};
 use std::collections::BTreeMap;
 use toile_core::Remarks;
 use toile_core::prelude::*;
@@ -28,22 +30,27 @@ const MANY: usize = 3;
 /// Mirror images of edges end this near to each other, metres.
 const NEAR: f64 = 0.01;
 
-/// A stitch as it is read: its number, its edges and whether start meets end.
-#[derive(Debug, Clone, Copy)]
-struct Stitch<'a> {
-    number: usize,
-    raw: &'a RawStitch,
-    start_to_end: bool,
-}
-
 /// The seams of the stitches. What is dropped or turned is told.
 pub(super) fn seams(
     stitches: &[RawStitch],
     panels: &[RawPanel],
-    made: &[Made],
+    made: &mut [Made],
     told: &mut Remarks,
 ) -> Result<Vec<PatternSeam>, Damage> {
-    let once = once(stitches, panels, told, &mut Vec::new());
+    let mut once = once(stitches, panels, told, &mut Vec::new());
+    let over = inside_out(&once, made);
+    for &p in &over {
+        turned_over(&mut made[p]);
+        told.warnings.push(format!(
+            "panel \"{}\" stands inside out: it looks at the wearer, and its stitches run side by side with what they are sewn to; it is turned over where it stands",
+            panels[p].name
+        ));
+    }
+    for s in &mut once {
+        let [(a, _), (b, _)] = s.raw.sides;
+        s.start_to_end ^= over.contains(&a) != over.contains(&b);
+    }
+    let made = &*made;
     let turned: Vec<bool> = wrong_ways(&once, panels, made)?;
     unturned(&once, &turned, panels)?;
     let mut out = Vec::with_capacity(once.len());
@@ -195,19 +202,6 @@ fn meets_at_corner(s: &RawStitch, panels: &[RawPanel]) -> Option<bool> {
         (false, true) => Some(false),
         _ => None,
     }
-}
-
-/// How far the two sides run against the way in which they are sewn, by their chords in space: -1
-/// where every thread has the same length, 1 where they cross most.
-fn leaning(s: &Stitch<'_>, made: &[Made]) -> f64 {
-    let [a, b] = s.raw.sides.map(|(p, e)| made[p].ends[e][1] - made[p].ends[e][0]);
-    let cosine = a.dot(&b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE);
-    if s.start_to_end { cosine } else { -cosine }
-}
-
-fn shortest(s: &RawStitch, made: &[Made]) -> f64 {
-    let length = |(p, e): (usize, usize)| (made[p].ends[e][1] - made[p].ends[e][0]).norm();
-    length(s.sides[0]).min(length(s.sides[1]))
 }
 
 /// Another stitch that is this one's mirror image about the middle of the body, and whether it runs

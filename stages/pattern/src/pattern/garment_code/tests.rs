@@ -229,6 +229,35 @@ fn a_stitch_against_its_mirror_image_or_its_place_is_turned() {
 }
 
 #[test]
+fn a_back_that_was_copied_from_its_front_is_turned_over_where_it_stands() {
+    let mut f = tube();
+    f["pattern"]["panels"]["back"] = rectangle(50.0, 60.0, [-25.0, 80.0, -20.0]);
+    f["pattern"]["panels"]["back"]["edges"][2]["curvature"] = json!([0.3, 0.1]);
+    f["pattern"]["stitches"] = json!([stitch(("front", 1), ("back", 1)), stitch(("front", 3), ("back", 3))]);
+    let (p, told) = read(&f).unwrap();
+    let over = "panel \"back\" stands inside out: it looks at the wearer, and its stitches run side by side with what they are sewn to; it is turned over where it stands";
+    assert_eq!(told, [over]);
+    let back = p.piece("back").unwrap();
+    assert_eq!(back.pose.unwrap().outside(), -Vector3::z());
+    assert!(polygon_area(&back.outer.points().0) > 0.0, "seen from outside it runs counter-clockwise");
+    // Its upper edge is drawn downwards by the file where that stands, from right to left.
+    let upper = back.path("edge_2").unwrap();
+    let ends = [0.0, upper.length()].map(|at| back.pose.unwrap().at(upper.at(at)));
+    assert!(
+        ends.iter().all(|e| (e.y - 1.4).abs() < 1e-12) && (ends[0].x - ends[1].x).abs() > 0.49,
+        "{ends:?}"
+    );
+    for seam in &p.seams {
+        let [a, b] = [0, 1].map(|k| in_space(&p, &seam.sides[k]));
+        assert!((a[0].y - b[0].y).abs() < 1e-12 && (a[0].x - b[0].x).abs() < 1e-12, "{}", seam.name);
+        assert!((a[1].y - b[1].y).abs() < 1e-12);
+    }
+    // A panel behind the wearer that looks away from them keeps what its file says.
+    let (p, told) = read(&tube()).unwrap();
+    assert_eq!((told, p.pieces.len()), (vec![], 2));
+}
+
+#[test]
 fn stitches_of_which_the_wrong_one_is_not_certain_are_refused() {
     // The front lies flat: its sides run across those of the back, and nothing tells which of the
     // two is meant.
