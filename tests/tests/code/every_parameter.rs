@@ -85,6 +85,7 @@ const UNSEEN: &[&str] = &[
     "Scene.weld",
     "StaticEquilibrium.coarsest",
     "StaticEquilibrium.coarse_steps",
+    "StaticEquilibrium.steps",
     "StaticEquilibrium.sew_through",
     "StaticEquilibrium.asleep",
     "StaticEquilibrium.thickness",
