@@ -27,8 +27,8 @@ const LEAST: f64 = 0.005;
 /// Seams count in this lower share of what hangs below the body's fork: the rise of a garment may
 /// end below that.
 const LOWER: f64 = 0.5;
-/// What reaches farther across the middle is before both legs, metres.
-const ACROSS: f64 = 0.03;
+/// The middle of what is before one leg lies at least so far beside the body's, metres.
+const ASIDE: f64 = 0.02;
 
 /// Moves the flat halves of legs that miss the body's; what was moved, in words.
 pub(super) fn swing(
@@ -103,17 +103,16 @@ fn of_one_leg(
             join_pairs(&mut group, &[[a as u32, b as u32]]);
         }
     }
-    let span = |k: usize| {
-        let low = places[names[k]].iter().filter(|p| p.y < below).map(|p| p.x);
-        low.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)))
+    let middle = |k: usize| {
+        let low: Vec<f64> = places[names[k]].iter().filter(|p| p.y < below).map(|p| p.x).collect();
+        (!low.is_empty()).then(|| low.iter().sum::<f64>() / low.len() as f64)
     };
     let one_sided = |k: usize| {
         let members = (0..names.len()).filter(|l| group[*l] == group[k]);
-        let (lo, hi) =
-            members.map(span).fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
-        lo > -ACROSS || hi < ACROSS
+        let middles: Vec<f64> = members.filter_map(middle).collect();
+        middles.iter().all(|x| *x > ASIDE) || middles.iter().all(|x| *x < -ASIDE)
     };
-    let reaching = (0..names.len()).filter(|k| span(*k).0.is_finite());
+    let reaching = (0..names.len()).filter(|k| middle(*k).is_some());
     reaching.map(|k| (names[k].clone(), one_sided(k))).collect()
 }
 
