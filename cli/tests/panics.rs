@@ -62,7 +62,7 @@ impl Lies {
         Ok(OutputFiles(Vec::new()))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         panic!("a check that fails");
     }
 }

@@ -1,7 +1,7 @@
 //! `#[stage]` on an `impl`: ports and the `Stage` implementation from the typed `run` function.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{format_ident, quote};
 use syn::{FnArg, GenericArgument, ImplItem, ImplItemFn, ItemImpl, Pat, PathArguments, ReturnType, Type};
 
 /// One artifact argument of `run`.
@@ -28,9 +28,8 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
         .ok_or(missing)?;
     let ports = ports(run)?;
     let out = output(run)?;
-    let (sizes, decisions, faults) = (sizes(&item), decisions(&item), faults(&item));
-    let (warnings, improves) = (warnings(&item), improves(&item));
-    let by_place = by_place(&item);
+    renamed(&item)?;
+    let hooks = hooks(&item);
     let in_ports = ports.iter().map(|Port { name, ty, original, sewn }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
@@ -54,12 +53,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
                 fn params(&self) -> ::std::string::String {
                     ::toile_core::param::ron_text(self)
                 }
-                #sizes
-                #decisions
-                #by_place
-                #faults
-                #warnings
-                #improves
+                #(#hooks)*
                 fn run_ports(
                     &self,
                     inputs: &::toile_core::Inputs,
@@ -83,93 +77,43 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
     })
 }
 
-/// The trait's `sizes`, where the author says by `foresee` how sizes go through the stage.
-fn sizes(item: &ItemImpl) -> TokenStream {
-    match has(item, "foresee") {
-        false => TokenStream::new(),
-        true => quote! {
-            fn sizes(
-                &self,
-                given: &::toile_core::cost::Size,
-                cx: &::toile_core::Context,
-            ) -> ::std::option::Option<::toile_core::cost::Size> {
-                Self::foresee(self, given, cx)
-            }
-        },
-    }
+/// The functions beside `run` that the author may write; the trait has each under the same name.
+fn hooks(item: &ItemImpl) -> Vec<TokenStream> {
+    let placed = || vec![("placed", quote!(&::toile_core::Placed<'_>))];
+    let errors = || quote!(::std::vec::Vec<::toile_core::StageError>);
+    let size = quote!(::toile_core::cost::Size);
+    let given = vec![("given", quote!(&#size)), ("cx", quote!(&::toile_core::Context))];
+    let known = vec![("known", quote!(&::toile_core::Known<'_>))];
+    let nodes = vec![("nodes", quote!(&[::toile_core::Node])), ("index", quote!(usize))];
+    [
+        ("sizes", given, quote!(::std::option::Option<#size>)),
+        ("decisions", known, quote!(::std::vec::Vec<::toile_core::decide::Decision>)),
+        ("by_place", nodes, quote!(::toile_core::ByPlace)),
+        ("faults", placed(), errors()),
+        ("warnings", placed(), errors()),
+        ("improves", vec![], quote!(bool)),
+    ]
+    .into_iter()
+    .filter(|(name, ..)| has(item, name))
+    .map(|(name, takes, gives)| {
+        let name = format_ident!("{name}");
+        let (names, types): (Vec<_>, Vec<_>) =
+            takes.into_iter().map(|(n, t)| (format_ident!("{n}"), t)).unzip();
+        quote! { fn #name(&self, #(#names: #types),*) -> #gives { Self::#name(self, #(#names),*) } }
+    })
+    .collect()
 }
 
-/// The trait's `decisions`, where the author tells them by `decide`.
-fn decisions(item: &ItemImpl) -> TokenStream {
-    match has(item, "decide") {
-        false => TokenStream::new(),
-        true => quote! {
-            fn decisions(
-                &self,
-                known: &::toile_core::Known<'_>,
-            ) -> ::std::vec::Vec<::toile_core::decide::Decision> {
-                Self::decide(self, known)
-            }
-        },
-    }
-}
+/// Names that such functions had before: without this an old function would never be called.
+const RENAMED: [(&str, &str); 3] = [("precheck", "faults"), ("foresee", "sizes"), ("decide", "decisions")];
 
-/// The trait's `by_place`, where the author gives parameters by a function of that name.
-fn by_place(item: &ItemImpl) -> TokenStream {
-    match has(item, "by_place") {
-        false => TokenStream::new(),
-        true => quote! {
-            fn by_place(
-                &self,
-                nodes: &[::toile_core::Node],
-                index: usize,
-            ) -> ::toile_core::ByPlace {
-                Self::by_place(self, nodes, index)
-            }
-        },
-    }
-}
-
-/// The trait's `faults`, where the author looks at parameters and files by `precheck`.
-fn faults(item: &ItemImpl) -> TokenStream {
-    match has(item, "precheck") {
-        false => TokenStream::new(),
-        true => quote! {
-            fn faults(
-                &self,
-                placed: &::toile_core::Placed<'_>,
-            ) -> ::std::vec::Vec<::toile_core::StageError> {
-                Self::precheck(self, placed)
-            }
-        },
-    }
-}
-
-/// The trait's `warnings`, where the author gives some by a function of that name.
-fn warnings(item: &ItemImpl) -> TokenStream {
-    match has(item, "warnings") {
-        false => TokenStream::new(),
-        true => quote! {
-            fn warnings(
-                &self,
-                placed: &::toile_core::Placed<'_>,
-            ) -> ::std::vec::Vec<::toile_core::StageError> {
-                Self::warnings(self, placed)
-            }
-        },
-    }
-}
-
-/// The trait's `improves`, where the author says by a function of that name with which parameters
-/// it does.
-fn improves(item: &ItemImpl) -> TokenStream {
-    match has(item, "improves") {
-        false => TokenStream::new(),
-        true => quote! {
-            fn improves(&self) -> bool {
-                Self::improves(self)
-            }
-        },
+fn renamed(item: &ItemImpl) -> syn::Result<()> {
+    match RENAMED.iter().find(|(old, _)| has(item, old)) {
+        Some((old, new)) => Err(syn::Error::new_spanned(
+            &item.self_ty,
+            format!("`fn {old}` of a stage is called `fn {new}` now"),
+        )),
+        None => Ok(()),
     }
 }
 

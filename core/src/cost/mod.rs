@@ -4,7 +4,7 @@
 //! pixels from its file's header, triangles from the garment's area and the edge length.
 //!
 //! A stage that can say more than the rules of its role has
-//! `fn foresee(&self, given: &Size, cx: &Context) -> Option<Size>` beside its `run`; all others
+//! `fn sizes(&self, given: &Size, cx: &Context) -> Option<Size>` beside its `run`; all others
 //! need not care.
 
 mod estimate;

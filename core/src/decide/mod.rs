@@ -5,8 +5,8 @@
 //! within which tolerance, saving how much, and the switch that turns it round. The switch is a
 //! parameter of a stage, or an option of the run: what a decision says is what the stage itself
 //! does. Rules live beside the stages that they speak of, one file a rule; a stage tells its
-//! decisions by `fn decide(&self, known: &Known<'_>) -> Vec<Decision>` beside its `run`. Stages of
-//! plugins tell none.
+//! decisions by `fn decisions(&self, known: &Known<'_>) -> Vec<Decision>` beside its `run`. Stages
+//! of plugins tell none.
 //!
 //! `toile_pipeline::decide` asks all stages, and has one rule of its own: stages that nothing asked
 //! for depends on do not run.

@@ -51,7 +51,7 @@ pub struct Saliency {
 #[stage]
 impl Saliency {
     /// Whether the file is there; what stands in it is looked at by the run.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let there = weights::named(&self.weights).and_then(|()| weights::there(&self.weights, placed.cx));
         there.err().into_iter().collect()
     }

@@ -100,7 +100,7 @@ impl BodyObj {
     }
 
     /// Whether the file is there and can be read.
-    pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    pub(crate) fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         self.read(placed.cx).map_err(|e| e.at("file")).err().into_iter().collect()
     }
 }

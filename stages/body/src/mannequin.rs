@@ -90,7 +90,7 @@ impl Mannequin {
     }
 
     /// Whether anybody has such measures.
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.measures().and_then(|(size, _)| check(&size)).err().into_iter().collect()
     }
 }

@@ -28,7 +28,7 @@ impl Telling {
         Err(StageError::internal("a test stage does nothing"))
     }
 
-    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
         assert!(!self.fails, "a rule that fails");
         let wired: Vec<&str> = ["panels", "photos", "body", "model", "shoes"]
             .into_iter()

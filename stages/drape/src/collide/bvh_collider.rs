@@ -107,14 +107,14 @@ impl BvhCollider {
         Ok(Collider { scheme, signature })
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         match self.volume {
             Volume::KDop(k) if ![6, 14, 18, 26].contains(&k) => vec![no_such_kdop(k)],
             _ => Vec::new(),
         }
     }
 
-    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
         let body = known.is_wired("body");
         body.then(|| asked_distances::rule(self.distances, known.given, SHARE))
             .flatten()

@@ -238,7 +238,7 @@ impl StaticEquilibrium {
         by_place::by_place(nodes, index)
     }
 
-    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
         let rules = [
             by_place::rule(known),
             mixed_precision::rule(self.precision, self.bending_continuation, known.given),

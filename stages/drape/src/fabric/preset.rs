@@ -37,7 +37,7 @@ impl Preset {
         self.typical().map(|t| t.fabric(self.hysteresis))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.typical().err().into_iter().collect()
     }
 

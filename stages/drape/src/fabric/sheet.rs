@@ -66,7 +66,7 @@ impl Cloth {
         })
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         let curves = [(&self.warp, "warp"), (&self.weft, "weft")];
         curves.into_iter().filter_map(|(points, param)| rising(points, param).err()).collect()
     }

@@ -86,7 +86,7 @@ impl Scene {
 
     /// Whether the file and that of its body are there and have their forms. What they say is
     /// checked by the run, at once: scenes come first.
-    pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    pub(crate) fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let form = || {
             placed.cx.look(&self.file).map_err(Unread::File)?;
             let text = placed.cx.read(&self.file).map_err(Unread::File)?;
@@ -104,14 +104,14 @@ impl Scene {
         })
     }
 
-    pub(crate) fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
-        let size = self.foresee(known.given, known.cx).unwrap_or_default();
+    pub(crate) fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
+        let size = self.sizes(known.given, known.cx).unwrap_or_default();
         asked_distances::rule(self.distances, &size, SHARE).into_iter().collect()
     }
 
     /// How much it will read: by counting. Reading it whole, with the repair of its body, would
     /// cost a tenth of a small skirt.
-    pub(crate) fn foresee(&self, _given: &Size, cx: &Context) -> Option<Size> {
+    pub(crate) fn sizes(&self, _given: &Size, cx: &Context) -> Option<Size> {
         let bytes = cx.read(&self.file).ok()?;
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         let counted: Counted = serde_json::from_slice(text).ok()?;

@@ -144,7 +144,7 @@ impl GraphCut {
     }
 
     /// Marks for photos that are not there.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let photos = crate::photo::sides(&placed.sources());
         let photos = photos.as_deref();
         let mut all = marks::check("garment", self.garment.keys(), photos);

@@ -67,11 +67,11 @@ impl NeighbourhoodMean {
     }
 
     /// Fewer pixels than it is given.
-    pub(crate) fn foresee(&self, given: &Size, _cx: &Context) -> Option<Size> {
+    pub(crate) fn sizes(&self, given: &Size, _cx: &Context) -> Option<Size> {
         joined_pixels::foreseen(given, self.pixel.metres())
     }
 
-    pub(crate) fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+    pub(crate) fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
         joined_pixels::rule(known, self.pixel.metres()).into_iter().collect()
     }
 }

@@ -45,7 +45,7 @@ impl Canny {
         detect(self, photo, mask, cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.ordered().err().into_iter().collect()
     }
 

@@ -46,7 +46,7 @@ impl Photos {
     }
 
     /// Names, widths, mirrors, and whether each file is a whole picture by its header.
-    pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    pub(crate) fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         if self.photos.is_empty() {
             return vec![none()];
         }
@@ -70,7 +70,7 @@ impl Photos {
     }
 
     /// How much it will read: from the files' headers.
-    pub(crate) fn foresee(&self, _given: &Size, cx: &Context) -> Option<Size> {
+    pub(crate) fn sizes(&self, _given: &Size, cx: &Context) -> Option<Size> {
         expected::size(&self.photos, cx)
     }
 }

@@ -85,7 +85,7 @@ impl Fit {
         Ok(OutputFiles(files))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         check_name(&self.name).err().into_iter().collect()
     }
 }

@@ -48,7 +48,7 @@ impl Arap {
         request.run(garment, pattern, cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.care.darts.checked().err().into_iter().collect()
     }
 }

@@ -51,7 +51,7 @@ impl SpringFlatten {
         request.run(garment, pattern, cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.care.darts.checked().err().into_iter().collect()
     }
 }

@@ -61,7 +61,7 @@ impl Woven {
         request.run(garment, pattern, cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.care.darts.checked().err().into_iter().collect()
     }
 }

@@ -207,15 +207,15 @@ impl PhotoTexturer {
     }
 
     /// How many texels it will make.
-    fn foresee(&self, given: &Size, _cx: &Context) -> Option<Size> {
+    fn sizes(&self, given: &Size, _cx: &Context) -> Option<Size> {
         texture_size::foreseen(given, self.size)
     }
 
-    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
         texture_size::rule(known, self.size).into_iter().collect()
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.fault().into_iter().collect()
     }
 }

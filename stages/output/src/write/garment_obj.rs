@@ -54,7 +54,7 @@ impl GarmentObj {
         Ok(OutputFiles::one(&format!("{}.obj", self.name), text.into_bytes()))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }

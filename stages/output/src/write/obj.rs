@@ -62,7 +62,7 @@ impl Obj {
         Ok(OutputFiles(files))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }

@@ -33,7 +33,7 @@ impl Ply {
         Ok(OutputFiles::one(&format!("{}.ply", self.name), ply(&sheets(model))))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }

@@ -69,7 +69,7 @@ impl SceneJson {
         Ok(OutputFiles(if scene.body.is_some() { vec![json, body] } else { vec![json] }))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }

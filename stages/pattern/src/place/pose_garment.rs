@@ -40,7 +40,7 @@ impl PoseGarment {
 
     /// The map begins at the first body: a garment that was draped on another one would be moved
     /// too far.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let index = |port: &str| {
             let maker = placed.maker(port)?;
             placed.nodes.iter().position(|n| std::ptr::eq(n, maker))

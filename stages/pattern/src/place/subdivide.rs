@@ -63,7 +63,7 @@ impl Subdivide {
     }
 
     /// As many triangles as every one is cut into.
-    pub(crate) fn foresee(&self, given: &Size, _cx: &Context) -> Option<Size> {
+    pub(crate) fn sizes(&self, given: &Size, _cx: &Context) -> Option<Size> {
         let triangles = given.get(Quantity::Triangles)?;
         Some(given.clone().with(Quantity::Triangles, triangles * (self.parts * self.parts) as f64))
     }

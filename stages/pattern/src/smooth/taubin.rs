@@ -43,7 +43,7 @@ impl Taubin {
         smooth(panel, self.iterations as usize, &[&inward, &outward], cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.outweighs().err().into_iter().collect()
     }
 

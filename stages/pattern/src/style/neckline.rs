@@ -107,7 +107,7 @@ impl Neckline {
 
     /// A pattern that is drawn from outlines says nothing of the body, and is not arranged around
     /// it.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let Some(style) = placed.maker("plan").filter(|_| placed.maker("pattern").is_none()) else {
             return Vec::new();
         };

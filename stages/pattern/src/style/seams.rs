@@ -61,7 +61,7 @@ impl Seams {
     }
 
     /// Names of panels and edges, where photos and a built-in style make them.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let seams: Vec<Seam> = self.seams.iter().map(SeamEntry::seam).collect();
         let edges = placed.maker("plan").and_then(|style| edges_of(style.card.name));
         misnamed(&seams, sides(&placed.sources()).as_deref(), edges.as_deref())

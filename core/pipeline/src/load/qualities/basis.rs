@@ -13,7 +13,7 @@
 //! algorithms, so that a newer program is told apart from another pipeline.
 //!
 //! Cost: reading the files once. Limit: a file that a stage reads without naming it in its
-//! parameters counts only where the stage looks at it beforehand (`foresee`).
+//! parameters counts only where the stage looks at it beforehand (`sizes`).
 
 use super::Quality;
 use crate::file_hash::file_hash;

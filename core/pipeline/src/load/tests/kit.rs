@@ -203,7 +203,7 @@ impl Canny {
         Err(StageError::internal("a test stage does nothing"))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         let wrong = self.low > self.high;
         wrong.then(|| StageError::invalid("`low` is above `high`").at("low")).into_iter().collect()
     }

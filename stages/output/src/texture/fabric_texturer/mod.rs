@@ -158,7 +158,7 @@ impl FabricTexturer {
         Ok(model)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.fault().into_iter().collect()
     }
 

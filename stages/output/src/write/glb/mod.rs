@@ -85,7 +85,7 @@ impl Glb {
         Ok(OutputFiles::one(&format!("{}.glb", self.name), bytes))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         let name = check_name(&self.name).err();
         name.into_iter().chain(check_copyright(self.copyright.as_deref()).err()).collect()
     }

@@ -51,7 +51,7 @@ impl PatternDxf {
         files(&self.name, ".dxf", to_dxf(pattern, standard, &options), cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         check_name(&self.name).err().into_iter().collect()
     }
 }

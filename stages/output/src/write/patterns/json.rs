@@ -28,7 +28,7 @@ impl PatternJson {
         files(&self.name, "_specification.json", garment_code::to_json(pattern), cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         check_name(&self.name).err().into_iter().collect()
     }
 }

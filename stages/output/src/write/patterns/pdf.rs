@@ -49,7 +49,7 @@ impl PatternPdf {
         files(&self.name, ".pdf", to_pdf(pattern, paper, &options), cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         check_name(&self.name).err().into_iter().collect()
     }
 }

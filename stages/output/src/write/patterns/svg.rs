@@ -30,7 +30,7 @@ impl PatternSvg {
         files(&self.name, ".svg", svg::to_svg(pattern, &options), cx)
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         check_name(&self.name).err().into_iter().collect()
     }
 }

@@ -53,11 +53,11 @@ impl Report {
         Ok(OutputFiles::one(&format!("{}.html", self.name), html.into_bytes()))
     }
 
-    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
         views::rule(known, self.views, VIEW_HEIGHT).into_iter().collect()
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }

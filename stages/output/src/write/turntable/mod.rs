@@ -121,7 +121,7 @@ impl Turntable {
         Ok(OutputFiles::one(&format!("{}.html", self.name), html.into_bytes()))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         check_name(&self.name).err().into_iter().collect()
     }
 }

@@ -69,7 +69,7 @@ impl Usdz {
         Ok(OutputFiles::one(&format!("{}.usdz", self.name), zip::stored(&files)?))
     }
 
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         let name = check_name(&self.name).err();
         name.into_iter().chain(check_copyright(self.copyright.as_deref()).err()).collect()
     }

@@ -83,7 +83,7 @@ impl DxfPattern {
     }
 
     /// Whether the files are there.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         seams::looked(self.named(), &self.file, &self.seams, placed)
     }
 }

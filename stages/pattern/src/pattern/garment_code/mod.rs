@@ -72,7 +72,7 @@ impl GarmentCode {
 
     /// Whether the file is there; what stands in it is read by the run, at once: patterns come
     /// first.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let there = self.named().and_then(|()| placed.cx.look(&self.file));
         there.map_err(|e| e.at("file")).err().into_iter().collect()
     }

@@ -73,7 +73,7 @@ impl SvgPattern {
     }
 
     /// Whether the files are there.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         seams::looked(self.named(), &self.file, &self.seams, placed)
     }
 }
