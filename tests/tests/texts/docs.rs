@@ -16,6 +16,9 @@ const MOST_COMMANDS: usize = 12;
 /// The most numbers in a hundred words of a page of the guide.
 const MOST_NUMBERS: f64 = 6.0;
 
+/// The most words of a page of the reference that is not generated, code and tables included.
+const MOST_WORDS: usize = 2500;
+
 /// Files below a folder whose names end so, but for what is built or fetched.
 fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     let left_out = ["target", "out", "node_modules", ".git"];
@@ -172,6 +175,16 @@ fn the_guide_is_no_table_of_figures() {
         seen += 1;
     }
     assert!(seen >= 6, "{seen} pages");
+}
+
+#[test]
+fn pages_of_the_reference_are_read_in_one_sitting() {
+    let pages = files(&root().join("docs/reference"), &[".md"]);
+    assert!(pages.len() > 15, "{} pages", pages.len());
+    for page in pages.iter().filter(|page| !page.ends_with("stages.md")) {
+        let words = fs::read_to_string(page).unwrap().split_whitespace().count();
+        assert!(words <= MOST_WORDS, "{}: {words} words", page.display());
+    }
 }
 
 #[test]
