@@ -1,7 +1,7 @@
 //! `toile migrate`: files of earlier versions of the built-in stages.
 
 use std::fs;
-use toile_tests::{PIPELINES, pipeline, toile};
+use toile_tests::{PIPELINES, pipeline, root, toile};
 
 /// As the first versions wrote it: LaplacianEdges is Laplacian now, Rest is StaticEquilibrium,
 /// Refine is Subdivide; parameters have other names, `tugs` of the stitcher is gone.
@@ -81,6 +81,28 @@ fn the_shipped_pipelines_are_up_to_date() {
     for name in PIPELINES {
         let answer = toile(&["migrate", "--check", &pipeline(name)]);
         assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    }
+}
+
+/// The pipelines as they were shipped on two days, beside the samples of today.
+#[test]
+fn the_pipelines_that_were_shipped_before_are_brought_to_the_new_names() {
+    let dir = tempfile::tempdir().unwrap();
+    let samples = pipeline("samples");
+    for (day, files) in [("2026-11-25", 7), ("2026-11-27", 22)] {
+        let before = fs::read_dir(root().join("tests/migrated").join(day)).unwrap();
+        let before: Vec<_> = before.map(|entry| entry.unwrap().path()).collect();
+        assert_eq!(before.len(), files, "{day}");
+        for file in before {
+            let name = dir.path().join(file.file_name().unwrap()).display().to_string();
+            let text = fs::read_to_string(&file).unwrap();
+            fs::write(&name, text.replace("\"samples/", &format!("\"{samples}/"))).unwrap();
+            let migrated = toile(&["migrate", &name]);
+            assert_eq!(migrated.code, 0, "{day} {}{}", migrated.out, migrated.err);
+            let valid = toile(&["validate", &name]);
+            assert_eq!(valid.code, 0, "{day} {}{}", valid.out, valid.err);
+            assert_eq!(toile(&["migrate", &name]).out, format!("{name}: up to date\n"));
+        }
     }
 }
 
