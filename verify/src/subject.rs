@@ -89,6 +89,7 @@ pub(crate) fn bare() -> Garment {
         weld: Vec::new(),
         pinned: Vec::new(),
         status: SolveStatus::default(),
+        starts: Vec::new(),
     }
 }
 

@@ -82,6 +82,15 @@ pub struct SolveStatus {
     pub held: Held,
 }
 
+/// Other places from which the panels of a garment may be sewn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GarmentStart {
+    /// What is otherwise, in words that end "sewn ...": `with the legs where the file puts them`.
+    pub told: String,
+    /// Positions of all vertices, metres.
+    pub positions: Vec<Point3>,
+}
+
 /// Panels lifted into space with their seams.
 ///
 /// Each panel keeps its own vertices, so that rest positions and photo pixels stay one per vertex;
@@ -107,6 +116,9 @@ pub struct Garment {
     pub pinned: Vec<u32>,
     /// What the last solver says.
     pub status: SolveStatus,
+    /// Other places from which it may be sewn, where a placement moved pieces by a rule that may be
+    /// wrong; a stage that sews or moves the garment leaves none.
+    pub starts: Vec<GarmentStart>,
 }
 
 impl Garment {
@@ -242,6 +254,10 @@ impl Artifact for Garment {
         indices("a triangle", n, self.triangles.iter().flatten())?;
         indices("a seam", n, self.seams.iter().flat_map(|s| s.pairs.iter().flatten()))?;
         self.seams.iter().try_for_each(|s| s.kind.check())?;
+        for start in &self.starts {
+            length("positions of another start", start.positions.len(), n)?;
+            finite("vertex of another start", start.positions.iter().map(|p| &p.coords))?;
+        }
         indices("a weld", n, self.weld.iter())?;
         indices("a pin", n, self.pinned.iter())?;
         let least = |(i, &w): (usize, &u32)| w as usize <= i && self.weld[w as usize] == w;

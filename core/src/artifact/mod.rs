@@ -36,7 +36,7 @@ pub use figures::{
     Figures, GarmentFigures, GirthFigures, PanelFigures, PenetrationFigures, Shortfall, StrainFigures,
 };
 pub use files::{OutputFile, OutputFiles};
-pub use garment::{Garment, GarmentPanel, GarmentSeam, Held, SeamState, SolveStatus, quantile};
+pub use garment::{Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, SeamState, SolveStatus, quantile};
 pub use geometry::{Point2, Point3, Vector2, Vector3, polygon_area, polyline_length};
 pub use locate::{Located, Locator};
 pub use mask::Mask;

@@ -197,6 +197,7 @@ pub fn garment() -> Garment {
         weld: (0..2 * n as u32).collect(),
         pinned: Vec::new(),
         status: SolveStatus::default(),
+        starts: Vec::new(),
         positions,
     }
 }
@@ -234,6 +235,7 @@ pub fn no_garment() -> Garment {
         weld: vec![],
         pinned: vec![],
         status: SolveStatus::default(),
+        starts: Vec::new(),
     }
 }
 

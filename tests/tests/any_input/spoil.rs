@@ -176,12 +176,15 @@ fn outline(e: &Edit, o: &mut Outline) {
         4 => e.apply(&mut o.edges, |edge, x| edge.gauge.length = x),
         5 => e.apply(&mut o.edges, |edge, x| edge.gauge = Gauge::straight(x.abs())),
         6 => o.holes.push(o.outer.clone()),
-        7 => o.inner.push(InnerLine {
-            name: "dart".into(),
-            kind: InnerKind::Dart,
-            points: vec![Point2::new(e.number, 0.1), Point2::new(0.0, e.number), o.outer.points[0]],
-            gauge: None,
-        }),
+        7 => {
+            let first = o.outer.points.first().copied().unwrap_or_default();
+            o.inner.push(InnerLine {
+                name: "dart".into(),
+                kind: InnerKind::Dart,
+                points: vec![Point2::new(e.number, 0.1), Point2::new(0.0, e.number), first],
+                gauge: None,
+            })
+        }
         _ => o.frame = None,
     }
 }

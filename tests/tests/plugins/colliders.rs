@@ -59,6 +59,7 @@ pub(crate) fn garment() -> Garment {
         weld: vec![0, 1, 2],
         pinned: vec![],
         status: SolveStatus::default(),
+        starts: Vec::new(),
     }
 }
 

@@ -39,6 +39,7 @@ fn garment(rest: Vec<Point2>, positions: Vec<Point3>, triangles: Vec<[u32; 3]>) 
         weld: (0..n as u32).collect(),
         pinned: Vec::new(),
         status: SolveStatus::default(),
+        starts: Vec::new(),
     }
 }
 

@@ -175,6 +175,7 @@ fn of_garments() {
             weld: vec![],
             pinned: vec![],
             status: SolveStatus::default(),
+            starts: vec![GarmentStart { told: "as drawn".into(), positions: garment().positions }],
         }
     );
     let panels = changed!(

@@ -4,8 +4,8 @@ use super::flat::{rgb, value, word};
 use super::plan::{kind_fields, kind_of};
 use super::{Reader, Record, Stored};
 use crate::artifact::{
-    Body, Garment, GarmentPanel, GarmentSeam, Held, Material, Mesh, Model, Point3, SeamState, Sheen,
-    SolveStatus, Texture, Variant,
+    Body, Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, Material, Mesh, Model, Point3, SeamState,
+    Sheen, SolveStatus, Texture, Variant,
 };
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -54,6 +54,12 @@ impl Garment {
             .list("weld", &self.weld)
             .list("pinned", &self.pinned)
             .records("status", [status_fields(&self.status)])
+            .records(
+                "starts",
+                self.starts
+                    .iter()
+                    .map(|s| Record::new().text("told", &s.told).list("positions", &s.positions)),
+            )
     }
 }
 
@@ -69,7 +75,17 @@ impl Stored for Garment {
             weld: r.list("weld")?,
             pinned: r.list("pinned")?,
             status: r.maybe("status")?.map(|s| status_of(&s)).transpose()?.unwrap_or_default(),
+            starts: starts_of(r)?,
         })
+    }
+}
+
+/// Garments of plugins built before there were other starts have none.
+fn starts_of(r: &Reader<'_>) -> Result<Vec<GarmentStart>, String> {
+    let start = |s: Reader<'_>| Ok(GarmentStart { told: s.text("told")?, positions: s.list("positions")? });
+    match r.find("starts") {
+        Some(_) => r.records("starts")?.map(start).collect(),
+        None => Ok(Vec::new()),
     }
 }
 

@@ -107,6 +107,7 @@ pub(in crate::artifact) fn garment() -> Garment {
             on_body: vec![0.9],
             held: held(),
         },
+        starts: vec![],
     }
 }
 

@@ -11,6 +11,7 @@ mod motion;
 mod projective;
 mod soften;
 mod spring;
+mod starts;
 mod static_equilibrium;
 #[cfg(test)]
 mod tests;

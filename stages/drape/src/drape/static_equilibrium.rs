@@ -12,6 +12,7 @@ use super::by_place;
 use super::mixed_precision::{self, Precision};
 use super::models::{Bending, Membrane, models};
 use super::motion::engine_air;
+use super::starts;
 use super::{ImplicitEuler, InTime};
 use crate::engine::{self, Rests, SchemeSurface, Setting, Words, crossing, scene_of, weld_seams};
 use nalgebra::Vector3;
@@ -119,8 +120,9 @@ pub struct StaticEquilibrium {
     /// is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh.
     /// Where the body keeps seams open, or the cloth does not come out of itself or of the body,
     /// the garment is sewn again around a thin figure of the body's pose, which grows to its full
-    /// size in it; that is told, and the better result is taken. Left out, it is true behind a
-    /// placement of a pattern, such as `Arrange`.
+    /// size in it; that is told, and the better result is taken. Where the placement left other
+    /// starts and the first does not sew cleanly on the coarsest mesh, each is sewn on it, and the
+    /// best goes on. Left out, it is true behind a placement of a pattern, such as `Arrange`.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well,
@@ -173,6 +175,10 @@ impl StaticEquilibrium {
         }
         let cancel = cx.cancel().clone();
         let stopper = Stopper::when(move || cancel.is_cancelled());
+        let scene = match self.sew_through {
+            true => starts::at_the_best(scene, garment, &self.solver(), engine_collider, &stopper, cx)?,
+            false => scene,
+        };
         let mut result = self
             .solver()
             .solve_around(&scene, engine_collider, &[], &stopper, &mut |level| progress.tell(level));
@@ -302,6 +308,7 @@ impl StaticEquilibrium {
         let mut garment = garment.clone();
         garment.positions = positions.iter().map(|p| Point3::from(*p)).collect();
         garment.velocities.fill(Vector3::zeros());
+        garment.starts.clear();
         garment
     }
 

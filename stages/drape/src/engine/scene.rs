@@ -168,6 +168,7 @@ pub fn garment_of(scene: &Scene) -> Garment {
         weld: (0..n as u32).collect(),
         pinned: scene.pinned.clone(),
         status: SolveStatus { held: held_of(&scene.held), ..SolveStatus::default() },
+        starts: Vec::new(),
     }
 }
 

@@ -283,6 +283,7 @@ pub(super) fn assembled(pieces: &Pieces, parts: Vec<Part>) -> Garment {
         weld,
         pinned: Vec::new(),
         status: SolveStatus::default(),
+        starts: Vec::new(),
     }
 }
 

@@ -15,6 +15,7 @@
 
 mod legs;
 mod limb;
+mod moving;
 mod patches;
 mod pleats;
 mod region;
@@ -23,13 +24,13 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
-use limb::Limb;
+use moving::{Moving, Places};
 use region::{Decided, Region};
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
 /// Places of every piece, and the sleeves among those that had none, each with the hand of its arm.
-type Stood = (BTreeMap<String, Vec<Point3>>, Option<Vec<(String, f64)>>);
+type Stood = (Places, Option<Vec<(String, f64)>>);
 
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
 const BELOW: f64 = 0.1;
@@ -53,10 +54,12 @@ const MIDDLE: f64 = 0.65;
 ///
 /// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the
 /// pattern says nothing, fronts, backs, sleeves, legs in one piece and waistbands are placed by
-/// their names, seams and sizes. What was decided and moved is in the log.
+/// their names, seams and sizes. What was decided and moved is in the log. Where legs are swung and
+/// sleeves bent, the places without that are left as other starts, which `StaticEquilibrium` tries
+/// where the garment does not sew.
 #[stage(
     role = Placement,
-    version = 5,
+    version = 6,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
@@ -104,29 +107,38 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
-        if self.bend {
-            let swung = legs::swing(&worn, body, &mut places, &seams, &offsets);
-            swung.into_iter().for_each(|what| cx.note(what));
-            for limb in Limb::arms(body) {
-                let mine = match &sleeves {
-                    Some(all) => {
-                        all.iter().filter(|s| s.1 * limb.root.x > 0.0).map(|s| s.0.clone()).collect()
-                    }
-                    None => tubes::around(&limb, &worn, &places),
-                };
-                let bent = tubes::bend(&limb, &mine, &mut places, &seams, &offsets, self.clearance.metres());
-                bent.into_iter().for_each(|what| cx.note(what));
+        let finished = |mut places: Places| -> Result<(Vec<Point3>, Vec<String>), StageError> {
+            for (name, of) in &folded {
+                if let Some(places) = places.get_mut(name) {
+                    of.deepen(places);
+                }
             }
-        }
-        for (name, of) in &folded {
-            if let Some(places) = places.get_mut(name) {
-                of.deepen(places);
+            let told = patches::lay(&patches, &mut places, &seams, &flat)?;
+            Ok((places.into_values().flatten().collect(), told))
+        };
+        let moving = Moving {
+            body,
+            pattern: &worn,
+            seams: &seams,
+            offsets: &offsets,
+            sleeves: sleeves.as_deref(),
+            clearance: self.clearance.metres(),
+        };
+        let mut starts = Vec::new();
+        let (places, told) = match self.bend {
+            true => {
+                let (moved, others) = moving.moved_and_others(&places);
+                for (told, places) in others {
+                    starts.push(GarmentStart { told: told.into(), positions: finished(places)?.0 });
+                }
+                moved
             }
-        }
-        patches::lay(&patches, &mut places, &seams, &flat)?.into_iter().for_each(|what| cx.note(what));
+            false => (places, Vec::new()),
+        };
+        let (points, laid) = finished(places)?;
+        told.into_iter().chain(laid).for_each(|what| cx.note(what));
         cx.check()?;
-        let points: Vec<Point3> = places.into_values().flatten().collect();
-        Ok(whole(&offsets, seams, fabric, points))
+        Ok(Garment { starts, ..whole(&offsets, seams, fabric, points) })
     }
 
     /// Places the pieces of a pattern that has no poses; every decision is told. What is still to

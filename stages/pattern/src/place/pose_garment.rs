@@ -34,6 +34,7 @@ impl PoseGarment {
             positions,
             velocities: vec![Vector3::zeros(); garment.velocities.len()],
             status: SolveStatus { converged: false, held: Held::default(), ..garment.status.clone() },
+            starts: Vec::new(),
             ..garment.clone()
         })
     }

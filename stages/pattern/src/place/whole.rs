@@ -39,6 +39,7 @@ pub(crate) fn whole(
         weld: (0..n as u32).collect(),
         pinned: Vec::new(),
         status: SolveStatus::default(),
+        starts: Vec::new(),
         positions: points,
     };
     offsets.iter().for_each(|(name, (first, panel))| append(&mut g, name, *first, panel, &fabric));

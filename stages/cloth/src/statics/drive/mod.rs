@@ -13,3 +13,4 @@ pub mod live;
 pub(crate) mod plan;
 pub(crate) mod sew;
 pub mod solve;
+pub mod trial;

@@ -141,7 +141,7 @@ impl StaticEquilibrium {
     }
 
     /// Greatest number of nodes of the coarsest level in the first try.
-    fn first_coarsest(&self, stack: Option<usize>) -> usize {
+    pub(crate) fn first_coarsest(&self, stack: Option<usize>) -> usize {
         if self.from_here {
             return usize::MAX;
         }

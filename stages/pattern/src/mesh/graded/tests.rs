@@ -201,6 +201,7 @@ fn rolled(radius: f64, half: f64) -> Garment {
         weld: (0..n as u32).collect(),
         pinned: vec![],
         status: SolveStatus::default(),
+        starts: Vec::new(),
     }
 }
 

@@ -77,6 +77,7 @@ impl<'a> Cut<'a> {
             weld,
             pinned: old.pinned.iter().map(kept).collect(),
             status: SolveStatus { converged: false, held: Held::default(), ..old.status.clone() },
+            starts: Vec::new(),
         };
         for k in 0..old.panels.len() {
             cx.check()?;

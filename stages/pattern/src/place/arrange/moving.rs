@@ -1,0 +1,74 @@
+//! Pieces that are moved to the body's limbs, and the starts without that.
+//!
+//! Whether a piece is one of a leg or an arm is guessed from labels, seams and places. So each move
+//! has its alternative: the pieces where the pattern puts them. Who sews the garment tries them.
+
+use super::limb::Limb;
+use super::{legs, tubes};
+use crate::place::sew::Offsets;
+use std::collections::BTreeMap;
+use toile_core::prelude::*;
+
+/// The vertices of each piece in space.
+pub(super) type Places = BTreeMap<String, Vec<Point3>>;
+
+/// What the moves go by.
+pub(super) struct Moving<'a> {
+    pub(super) body: &'a Body,
+    pub(super) pattern: &'a Pattern,
+    pub(super) seams: &'a [GarmentSeam],
+    pub(super) offsets: &'a Offsets<'a>,
+    /// The sleeves of a pattern without places, each with the hand of its arm.
+    pub(super) sleeves: Option<&'a [(String, f64)]>,
+    /// Least distance of a bent piece from the arm, metres.
+    pub(super) clearance: f64,
+}
+
+/// Places, and what was moved, in words.
+type Moved = (Places, Vec<String>);
+
+impl Moving<'_> {
+    /// The pieces moved to legs and arms, and the places without one of these moves or both, each
+    /// in words.
+    pub(super) fn moved_and_others(&self, places: &Places) -> (Moved, Vec<(&'static str, Places)>) {
+        let swung = self.swung(places.clone());
+        let (has_swung, bent) = (!swung.1.is_empty(), self.bent(places.clone()));
+        let has_bent = !bent.1.is_empty();
+        // Without a place in the pattern, a sleeve has none but that around the arm.
+        let is_filed = self.sleeves.is_none();
+        let mut others = Vec::new();
+        if has_swung {
+            others.push(("with the legs where the pattern puts them", bent.0));
+        }
+        if has_bent && is_filed {
+            others.push(("with the sleeves where the pattern puts them", swung.0.clone()));
+        }
+        if has_swung && has_bent && is_filed {
+            others.push(("with all pieces where the pattern puts them", places.clone()));
+        }
+        let mut told = swung.1;
+        let (places, of_arms) = self.bent(swung.0);
+        told.extend(of_arms);
+        ((places, told), others)
+    }
+
+    /// Halves of legs that miss the body's, swung before them.
+    fn swung(&self, mut places: Places) -> Moved {
+        let told = legs::swing(self.pattern, self.body, &mut places, self.seams, self.offsets);
+        (places, told)
+    }
+
+    /// Sleeves and cuffs, bent around the arms.
+    fn bent(&self, mut places: Places) -> Moved {
+        let mut told = Vec::new();
+        for limb in Limb::arms(self.body) {
+            let mine = match self.sleeves {
+                Some(all) => all.iter().filter(|s| s.1 * limb.root.x > 0.0).map(|s| s.0.clone()).collect(),
+                None => tubes::around(&limb, self.pattern, &places),
+            };
+            let sewn = tubes::bend(&limb, &mine, &mut places, self.seams, self.offsets, self.clearance);
+            told.extend(sewn);
+        }
+        (places, told)
+    }
+}
