@@ -1,5 +1,5 @@
-//! Whole pipelines, timed: `cargo bench -p toile-tests`. docs/log/2026-11-24-times-of-pipelines.md
-//! keeps the figures.
+//! Whole pipelines, timed: `cargo bench -p toile-tests`. docs/log/README.md keeps the
+//! figures.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{Criterion, criterion_group, criterion_main};

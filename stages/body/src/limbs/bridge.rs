@@ -8,9 +8,9 @@
 //! to the mean of their neighbours (Gauss-Seidel on the membrane, in the order of their numbers) as
 //! far as the body lets them: the obstacle problem. Connectivity stays. Cost: up to 300 distances
 //! for each vertex of the gap, and a comparison of all pairs of vertices near an armpit: 0.4 s for
-//! a body of 24,000 vertices (docs/log/2026-11-25-patterns.md). Limits: only near the landmarks of
-//! the armpits, creases elsewhere stay; where the body still comes through the skin after the last
-//! raising, that is left to the check of the finished garment against the body.
+//! a body of 24,000 vertices (docs/log/2026-11-26-sewing-tried.md). Limits: only near the landmarks
+//! of the armpits, creases elsewhere stay; where the body still comes through the skin after the
+//! last raising, that is left to the check of the finished garment against the body.
 
 use crate::skin::topology::neighbours;
 use rayon::prelude::*;

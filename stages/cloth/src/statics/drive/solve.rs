@@ -20,7 +20,8 @@
 //! With [`StaticEquilibrium::bending_continuation`] bending starts stiff and is lowered on the way
 //! (see `levels/bending_continuation`), so that the result depends less on the initial positions.
 //!
-//! Cost: some 35 to 150 factorizations of the finest level (docs/log/2026-11-23-rest-speed.md).
+//! Cost: some 35 to 150 factorizations of the finest level
+//! (docs/log/2026-11-23-beside-blender-and-newton.md).
 //! Limits: folds finer than the coarse mesh must form on finer levels; of the many equilibria that
 //! friction and folds allow, one is found.
 

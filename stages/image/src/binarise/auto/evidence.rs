@@ -6,7 +6,7 @@
 //! Methods that agree to 0.96 differ by the width of a contour; a garment laid flat is its own
 //! mirror image to 0.85 with a fold or a sleeve aside, and less than 0.65 is half a garment; a
 //! contour follows edges but for a stretch in shade. The bounds were chosen by looking at 23 photos
-//! with masks drawn by hand (docs/log/2026-11-25-masks.md).
+//! with masks drawn by hand (docs/log/README.md#masks).
 
 use super::super::small::Small;
 use super::contour::support;
