@@ -202,11 +202,14 @@ fn in_metres(photo: &Photo, outer: Loop, holes: Vec<Loop>) -> Result<Outline, St
     })
 }
 
+/// What lies in a photo is this wide, metres: a doll's sleeve, a tent.
+const WIDEST: std::ops::Range<f64> = 1e-3..1e3;
+
 fn scale(photo: &Photo, width_px: f64) -> Result<f64, StageError> {
     let given = photo.px_per_metre.or_else(|| photo.garment_width.map(|w| width_px / w));
     match given {
-        Some(s) if s.is_finite() && s > 0.0 => Ok(s),
-        Some(s) => Err(StageError::invalid(format!("the photo's scale is {s} pixels per metre"))
+        Some(s) if s > 0.0 && WIDEST.contains(&(width_px / s)) => Ok(s),
+        Some(s) => Err(StageError::invalid(format!("the photo's scale is {s:?} pixels per metre"))
             .hint("give the garment's real width, like `width: \"52 cm\"`")),
         None => Err(StageError::invalid("the photo's scale is not known")
             .hint("give the garment's real width beside its file, like `width: \"52 cm\"`")),

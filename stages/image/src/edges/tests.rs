@@ -311,6 +311,8 @@ fn errors_say_what_is_wrong_and_what_to_do() {
 
     let nan = failure(&Photo { px_per_metre: Some(f64::NAN), ..photo.clone() }, &whole);
     assert_eq!(nan.0, "the photo's scale is NaN pixels per metre");
+    let tiny = failure(&Photo { px_per_metre: Some(1e-300), ..photo.clone() }, &whole);
+    assert_eq!(tiny.0, "the photo's scale is 1e-300 pixels per metre");
 }
 
 #[test]

@@ -27,6 +27,8 @@ const LEAST: f64 = 0.005;
 /// Seams count in this lower share of what hangs below the body's fork: the rise of a garment may
 /// end below that.
 const LOWER: f64 = 0.5;
+/// What is so little below the fork is right below it, metres.
+const AT_FORK: f64 = 0.1;
 /// The middle of what is before one leg lies at least so far beside the body's, metres.
 const ASIDE: f64 = 0.02;
 
@@ -40,7 +42,8 @@ pub(super) fn swing(
 ) -> Vec<String> {
     let Some(crotch) = body.landmarks.get("crotch").map(|p| p.y) else { return Vec::new() };
     let lowest = places.values().flatten().map(|p| p.y).fold(crotch, f64::min);
-    let of_one_leg = of_one_leg(places, seams, offsets, lowest + LOWER * (crotch - lowest));
+    let low = lowest + LOWER * (crotch - lowest);
+    let of_one_leg = of_one_leg(places, seams, offsets, [low, crotch]);
     let mut told = Vec::new();
     for piece in pattern.pieces.iter().filter(|p| p.body_part == Some(BodyPart::Leg)) {
         if of_one_leg.get(&piece.name) != Some(&true) {
@@ -79,13 +82,14 @@ pub(super) fn swing(
     told
 }
 
-/// For each piece that reaches below a height, whether it and all that is sewn to it there lie on
-/// one side of the middle.
+/// For each piece that reaches below the first height, whether it and all that is sewn to it there
+/// lie on one side of the middle, there and right below the fork, the second height: a skirt that is
+/// longer on one side lies on that side only low down.
 fn of_one_leg(
     places: &BTreeMap<String, Vec<Point3>>,
     seams: &[GarmentSeam],
     offsets: &Offsets,
-    below: f64,
+    [below, fork]: [f64; 2],
 ) -> BTreeMap<String, bool> {
     let names: Vec<&String> = places.keys().collect();
     let piece_of = |v: u32| {
@@ -103,16 +107,22 @@ fn of_one_leg(
             join_pairs(&mut group, &[[a as u32, b as u32]]);
         }
     }
-    let middle = |k: usize| {
-        let low: Vec<f64> = places[names[k]].iter().filter(|p| p.y < below).map(|p| p.x).collect();
-        (!low.is_empty()).then(|| low.iter().sum::<f64>() / low.len() as f64)
+    let middle = |k: usize, heights: [f64; 2]| {
+        let is_in = |p: &&Point3| p.y >= heights[0] && p.y < heights[1];
+        let there: Vec<f64> = places[names[k]].iter().filter(is_in).map(|p| p.x).collect();
+        (!there.is_empty()).then(|| there.iter().sum::<f64>() / there.len() as f64)
     };
+    let low = [f64::NEG_INFINITY, below];
+    let right_below_fork = [fork - AT_FORK, fork];
     let one_sided = |k: usize| {
         let members = (0..names.len()).filter(|l| group[*l] == group[k]);
-        let middles: Vec<f64> = members.filter_map(middle).collect();
+        let middles: Vec<f64> = members
+            .flat_map(|l| [low, right_below_fork].map(|heights| middle(l, heights)))
+            .flatten()
+            .collect();
         middles.iter().all(|x| *x > ASIDE) || middles.iter().all(|x| *x < -ASIDE)
     };
-    let reaching = (0..names.len()).filter(|k| middle(*k).is_some());
+    let reaching = (0..names.len()).filter(|k| middle(*k, low).is_some());
     reaching.map(|k| (names[k].clone(), one_sided(k))).collect()
 }
 
@@ -187,6 +197,25 @@ mod tests {
         }
         let waist = &places["left_leg_front"][5 * 40..];
         assert!(waist.iter().all(|p| p.x < 0.2001), "what is above the fork stays");
+    }
+
+    #[test]
+    fn a_skirt_that_is_longer_on_one_side_is_no_leg() {
+        // From 20 cm on the right to 20 cm on the left at the fork, and only on the left low down.
+        let row = |k: usize| {
+            let y = 0.105 + 0.02 * k as f64;
+            (0..9)
+                .map(move |i| Point3::new(-0.2 + 0.05 * f64::from(i), y, 0.2))
+                .filter(move |p| p.x > 0.4 - y)
+        };
+        let piece = Piece { name: "skirt_front".into(), body_part: Some(BodyPart::Leg), ..Piece::default() };
+        let pattern = Pattern { name: "skirt".into(), pieces: vec![piece], seams: vec![] };
+        let places = BTreeMap::from([("skirt_front".to_owned(), (0..35).flat_map(row).collect::<Vec<_>>())]);
+        let low = places["skirt_front"].iter().filter(|p| p.y < 0.4).map(|p| p.x);
+        assert!(low.clone().sum::<f64>() / low.count() as f64 > ASIDE, "low down it lies on one side");
+        let mut moved = places.clone();
+        assert!(swing(&pattern, &mannequin(), &mut moved, &[], &Offsets::new()).is_empty());
+        assert_eq!(moved, places);
     }
 
     #[test]
