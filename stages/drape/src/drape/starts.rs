@@ -93,7 +93,8 @@ mod tests {
         assert_eq!(best_of(&[trial(0.072, 0, 0.1), trial(0.0, 4, 0.1)]), 1);
         assert_eq!(best_of(&[trial(0.0, 4, 0.1), trial(0.0, 0, 0.3)]), 1);
         assert_eq!(best_of(&[trial(0.0, 0, 0.10), trial(0.0, 0, 0.05)]), 1);
-        assert_eq!(best_of(&[trial(0.0, 0, 0.1), trial(0.0, 0, 0.1)]), 0, "the first of those alike");
+        assert_eq!(best_of(&[trial(0.0, 0, 0.1), trial(0.0, 0, 0.09)]), 0, "the first of those alike");
+        assert_eq!(best_of(&[trial(0.0, 5, 0.1), trial(0.0, 4, 0.1)]), 0, "one pair less is chance");
         assert_eq!(best_of(&[None, trial(0.4, 0, 0.1)]), 1);
         assert_eq!(best_of(&[trial(0.075, 0, 0.1), trial(0.072, 0, 0.2)]), 0, "3 mm are chance");
     }

@@ -27,7 +27,10 @@ use std::time::Instant;
 type Vec3 = Vector3<f64>;
 
 /// Rounds at most in which nodes are moved out where triangles dip into the body.
-const CLEARANCE_ROUNDS: usize = 8;
+const CLEARANCE_ROUNDS: usize = 16;
+
+/// Share of its last raise that is added to what a node lacks again.
+const RAISE_GROWTH: f64 = 1.5;
 
 /// First step of pseudo-time in such a round, in which the cloth hardly moves, s.
 const CLEARANCE_STEP: f64 = 0.2;
@@ -129,6 +132,8 @@ impl<'a> Solve<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
         let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
+        // By how much the offset of each node grew in the last round.
+        let mut raises = vec![0.0; x.len()];
         for _ in 0..CLEARANCE_ROUNDS {
             let Some(Clearance { lacks, depth, triangles }) =
                 self.plan.body.map(|c| clearance(mesh.sheet, c.surface, x))
@@ -139,8 +144,12 @@ impl<'a> Solve<'a> {
                 self.dip = Some(depth);
                 break;
             }
+            // Cloth under tension gives way to less than its offset asks for.
+            for (raise, lacks) in raises.iter_mut().zip(&lacks) {
+                *raise = if *lacks > 0.0 { lacks + RAISE_GROWTH * *raise } else { 0.0 };
+            }
             if let Some(contact) = &mut system.body_contact {
-                contact.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
+                contact.offsets.iter_mut().zip(&raises).for_each(|(o, r)| *o += r);
             }
             let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
             self.reports.push(report);

@@ -20,6 +20,9 @@ use std::time::Instant;
 /// Seams that are open by less than this differ by chance, m.
 const SAME_GAP: f64 = 0.01;
 
+/// Factor between what crosses, or between strains, from which one start is better.
+const FACTOR: f64 = 1.5;
+
 /// How well a garment is sewn on its coarsest mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trial {
@@ -40,17 +43,19 @@ impl Trial {
         self.gap == 0.0 && self.crossings == 0 && self.pierced == 0
     }
 
-    /// Whether it is better than `other`: by open seams, then by what crosses, then by strain.
+    /// Whether it is clearly better than `other`: by open seams, then by what crosses, then by
+    /// strain. Less than a factor between two of them is chance.
     #[must_use]
     pub fn is_better(&self, other: &Self) -> bool {
-        let crossing = |t: &Self| t.crossings + t.pierced;
         if (self.gap - other.gap).abs() > SAME_GAP || (self.gap == 0.0) != (other.gap == 0.0) {
             return self.gap < other.gap;
         }
-        match crossing(self).cmp(&crossing(other)) {
-            std::cmp::Ordering::Equal => self.strain < other.strain,
-            order => order.is_lt(),
+        let crossing = |t: &Self| (t.crossings + t.pierced) as f64;
+        let (own, others) = (crossing(self), crossing(other));
+        if own.max(others) > FACTOR * own.min(others) {
+            return own < others;
         }
+        FACTOR * self.strain < other.strain
     }
 }
 
