@@ -5,11 +5,12 @@
 //! Newton's method on each level (see `newton/to_rest`). Limits: a level that is too coarse for the
 //! body or its seams is reported, and the caller tries again on a finer one (see `solve`).
 
+use crate::contact::collision_surface::CollisionSurface;
 use crate::error::ClothError;
 use crate::mesh::Sheet;
 use crate::statics::drive::plan::Plan;
 use crate::statics::factor::multifrontal::Halt;
-use crate::statics::forces::clearance::{Clearance, clearance};
+use crate::statics::forces::clearance::{Clearance, clearance, lifted};
 use crate::statics::forces::penetration::pierced;
 use crate::statics::forces::seam_force::{widest, widest_open_seam};
 use crate::statics::forces::system::System;
@@ -31,6 +32,12 @@ const CLEARANCE_ROUNDS: usize = 16;
 
 /// Share of its last raise that is added to what a node lacks again.
 const RAISE_GROWTH: f64 = 1.5;
+
+/// Dips that are less deep than this after a round are moved out without regard to forces, m.
+const SHALLOW_DIP: f64 = 1e-4;
+
+/// Farthest that a node is moved so, m.
+const FARTHEST_LIFT: f64 = 1e-3;
 
 /// First step of pseudo-time in such a round, in which the cloth hardly moves, s.
 const CLEARANCE_STEP: f64 = 0.2;
@@ -123,6 +130,8 @@ impl<'a> Solve<'a> {
     }
 
     /// Moves nodes out where triangles between them dip into the body, and relaxes the cloth again.
+    /// What is left of some hundredths of a millimetre, as in the crease of an armpit, is moved out
+    /// without regard to forces.
     pub(crate) fn restore_clearance(
         &mut self,
         mesh: LevelMesh<'_>,
@@ -131,17 +140,18 @@ impl<'a> Solve<'a> {
         options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
+        let Some(body) = self.plan.body else { return Ok(()) };
         let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
         // By how much the offset of each node grew in the last round.
         let mut raises = vec![0.0; x.len()];
         for _ in 0..CLEARANCE_ROUNDS {
-            let Some(Clearance { lacks, depth, triangles }) =
-                self.plan.body.map(|c| clearance(mesh.sheet, c.surface, x))
-            else {
-                break;
-            };
+            let Clearance { lacks, depth, triangles, .. } = clearance(mesh.sheet, body.surface, x);
             if triangles == 0 {
                 self.dip = Some(depth);
+                break;
+            }
+            if raises.iter().any(|r| *r > 0.0) && depth < SHALLOW_DIP {
+                self.lift(mesh, body.surface, &system.pinned, x);
                 break;
             }
             // Cloth under tension gives way to less than its offset asks for.
@@ -155,6 +165,15 @@ impl<'a> Solve<'a> {
             self.reports.push(report);
         }
         Ok(())
+    }
+
+    /// Moves nodes out of the body without regard to forces, where cloth does not cross more cloth
+    /// then.
+    fn lift(&self, mesh: LevelMesh<'_>, body: &dyn CollisionSurface, pinned: &[bool], x: &mut [Vec3]) {
+        let Some(lifted) = lifted(mesh.sheet, body, x, pinned, FARTHEST_LIFT) else { return };
+        if self.crossings(mesh.sheet, &lifted) <= self.crossings(mesh.sheet, x) {
+            x.copy_from_slice(&lifted);
+        }
     }
 
     /// The equilibrium of the finest level, with its nodes at `x`.
