@@ -19,8 +19,11 @@ fn digest(state: &Equilibrium) -> u64 {
     let mut bits: Vec<u64> = Vec::new();
     let mut add = |v: &Vector3<f64>| bits.extend([v.x, v.y, v.z].map(f64::to_bits));
     state.positions.iter().chain(&state.slides).for_each(&mut add);
-    state.friction_contacts.iter().for_each(|c| [c.anchor, c.slid, c.normal].iter().for_each(&mut add));
-    bits.extend(state.friction_contacts.iter().map(|c| c.load.to_bits()));
+    state
+        .friction_contacts
+        .iter()
+        .for_each(|c| [c.memory.anchor, c.slid, c.normal].iter().for_each(&mut add));
+    bits.extend(state.friction_contacts.iter().map(|c| c.memory.load.to_bits()));
     bits.extend(state.folds.iter().chain(&state.offsets).map(|v| v.to_bits()));
     bits.extend([state.energy, state.residual, state.outcome.speed].map(f64::to_bits));
     bits.iter().fold(0xcbf2_9ce4_8422_2325, |d: u64, b| (d ^ b).wrapping_mul(0x0100_0000_01b3))

@@ -9,9 +9,11 @@ use crate::error::ClothError;
 use crate::mesh::Sheet;
 use crate::statics::drive::plan::Plan;
 use crate::statics::factor::multifrontal::Halt;
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::clearance::{Clearance, clearance};
 use crate::statics::forces::penetration::pierced;
-use crate::statics::forces::seam_force::{widest, widest_open_seam};
+use crate::statics::forces::seam_force::{SeamForces, widest};
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::assemble::{KEPT_FORCE, strongest};
 use crate::statics::levels::cloths::pieces_of;
@@ -139,7 +141,7 @@ impl<'a> Solve<'a> {
                 self.dip = Some(depth);
                 break;
             }
-            if let Some(contact) = &mut system.body_contact {
+            if let Some(contact) = system.get_mut::<BodyContact>() {
                 contact.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
             let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
@@ -165,7 +167,8 @@ impl<'a> Solve<'a> {
         let slides = self.plan.pieces[0].spread(&system.displacements(&x));
         let offsets = self.plan.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
-        let friction_contacts = system.self_contact.take().map_or_else(Vec::new, |c| c.friction_contacts);
+        let own = system.get_mut::<SelfContact>().map(|c| &mut c.friction_contacts);
+        let friction_contacts = own.map(std::mem::take).unwrap_or_default();
         let state = Equilibrium {
             positions,
             outcome,
@@ -212,8 +215,8 @@ impl<'a> Solve<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
         let LevelMesh { k, sheet, layout } = mesh;
-        let sewing = self.joined_at.is_none() && !system.seam_forces.is_empty();
-        let meets = system.self_contact.is_some() && !(sewing && self.sews_through);
+        let sewing = self.joined_at.is_none() && system.is_sewing();
+        let meets = system.get::<SelfContact>().is_some() && !(sewing && self.sews_through);
         let tree = meets.then(|| self.plan.tree(k, sheet, layout, sewing));
         let start = Instant::now();
         let meshes = self.plan.pieces.len();
@@ -230,7 +233,8 @@ impl<'a> Solve<'a> {
         let late = || self.clock.elapsed() > self.plan.settings.budget || self.plan.stopper.is_up();
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             let seconds = start.elapsed().as_secs_f64();
-            let gap = if sewing { widest_open_seam(&system.seam_forces, x) } else { 0.0 };
+            let seams = system.get::<SeamForces>().filter(|_| sewing);
+            let gap = seams.map_or(0.0, |s| s.widest(x));
             report = LevelReport { gap, outcome: *outcome, seconds, ..report };
             stop = self.fallen(k, system, sheet, x, &piece);
             if stop.is_none() && progress(&report).is_break() {
