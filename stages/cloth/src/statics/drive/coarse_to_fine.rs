@@ -57,6 +57,8 @@ pub(crate) enum Draped {
 pub(crate) struct LevelMesh<'m> {
     /// The level index, from fine to coarse.
     pub(crate) k: usize,
+    /// Whether the seams are open, so that every vertex is a node.
+    pub(crate) is_open: bool,
     /// The open or sewn sheet.
     pub(crate) sheet: &'m Sheet,
     /// The places that order the elimination.
@@ -214,7 +216,7 @@ impl<'a> Solve<'a> {
         done: &dyn Fn(&System<'_>, &[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
-        let LevelMesh { k, sheet, layout } = mesh;
+        let LevelMesh { k, sheet, layout, .. } = mesh;
         let sewing = self.joined_at.is_none() && system.is_sewing();
         let meets = system.get::<SelfContact>().is_some() && !(sewing && self.sews_through);
         let tree = meets.then(|| self.plan.tree(k, sheet, layout, sewing));
@@ -249,36 +251,34 @@ impl<'a> Solve<'a> {
         };
         match relax(system, layout, tree, x, options, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
-            Err(Halt::NotPositive(error)) => return Err(self.unsolvable(k, error.node, x)),
+            Err(Halt::NotPositive(error)) => return Err(self.unsolvable(mesh, error.node, x)),
             Err(Halt::Stopped) => is_late = true,
         }
         match stop {
             Some(error) => Err(error),
             None if self.plan.stopper.is_up() => Err(StaticsError::Stopped),
-            None if is_late => Err(self.timeout(k, x)),
+            None if is_late => Err(self.timeout(mesh, x)),
             None => Ok(report),
         }
     }
 
-    /// The error of a step of level `k` from `x` that has no solution near `node`.
-    fn unsolvable(&self, k: usize, node: u32, x: &[Vec3]) -> StaticsError {
-        let pieces = &self.plan.pieces[k];
-        let is_open = pieces.nodes != x.len();
-        let of_node = || pieces.node.iter().position(|n| *n == node).unwrap_or(0);
-        let vertex = if is_open { node as usize } else { of_node() };
-        unsolvable(self.plan.scene, self.plan.finest_of(k, vertex as u32) as usize, &x[node as usize])
+    /// The error of a step of a level from `x` that has no solution near `node`.
+    fn unsolvable(&self, mesh: LevelMesh<'_>, node: u32, x: &[Vec3]) -> StaticsError {
+        let of_node = || self.plan.pieces[mesh.k].node.iter().position(|n| *n == node).unwrap_or(0);
+        let vertex = if mesh.is_open { node as usize } else { of_node() };
+        unsolvable(self.plan.scene, self.plan.finest_of(mesh.k, vertex as u32) as usize, &x[node as usize])
     }
 
-    /// The error of a level `k` that is out of time with its nodes at `x`.
-    fn timeout(&self, k: usize, x: &[Vec3]) -> StaticsError {
+    /// The error of a level that is out of time with its nodes at `x`.
+    fn timeout(&self, mesh: LevelMesh<'_>, x: &[Vec3]) -> StaticsError {
         let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.plan.pieces.len());
-        StaticsError::Timeout { seconds, level: levels - k, levels, positions: self.prolonged(k, x) }
+        let vertices = if mesh.is_open { x.to_vec() } else { self.plan.pieces[mesh.k].spread(x) };
+        let positions = self.prolonged(mesh.k, vertices);
+        StaticsError::Timeout { seconds, level: levels - mesh.k, levels, positions }
     }
 
-    /// The positions of the nodes of level `k`, sewn or open, prolonged to the finest vertices.
-    pub(crate) fn prolonged(&self, k: usize, x: &[Vec3]) -> Vec<Vec3> {
-        let vertices =
-            if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };
+    /// The positions of the vertices of level `k`, prolonged to the finest vertices.
+    pub(crate) fn prolonged(&self, k: usize, vertices: Vec<Vec3>) -> Vec<Vec3> {
         self.plan.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }
 
@@ -288,9 +288,9 @@ impl<'a> Solve<'a> {
         if gap <= self.plan.settings.join_gap {
             return Ok(());
         }
-        let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
+        let positions = self.plan.pieces[0].spread(x);
+        let seam = self.widest_seam(0, &positions);
         let force = KEPT_FORCE * strongest(&self.plan.cloths);
-        let positions = self.prolonged(0, x);
         Err(StaticsError::SeamNotClosed { seam, gap, force, reversed: vec![], positions })
     }
 

@@ -230,7 +230,8 @@ impl<'a> Solve<'a> {
             c.offsets.clone()
         });
         let Level { system, sheet, layout, x, .. } = &mut *level;
-        let run = self.relax_uncrossed(LevelMesh { k, sheet, layout }, system, x, &options, progress);
+        let mesh = LevelMesh { k, is_open: false, sheet, layout };
+        let run = self.relax_uncrossed(mesh, system, x, &options, progress);
         if let (Some(contact), Some(offsets)) = (level.system.get_mut::<BodyContact>(), offsets) {
             (contact.grows_offsets, contact.offsets) = (false, offsets);
         }
@@ -251,7 +252,7 @@ impl<'a> Solve<'a> {
         let options =
             NewtonOptions { first: FIRST_ON_FINEST, steps, speed, proof, one_by_one, ..self.options() };
         let Level { system, sheet, layout, x, .. } = level;
-        let mesh = LevelMesh { k: 0, sheet, layout };
+        let mesh = LevelMesh { k: 0, is_open: false, sheet, layout };
         let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
         self.reports.push(report);
         self.restore_clearance(mesh, system, x, &options, progress)

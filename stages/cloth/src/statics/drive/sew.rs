@@ -133,7 +133,7 @@ impl Solve<'_> {
         if gap > self.most_gap() {
             let seam = self.widest_seam(self.plan.coarsest_level(), x);
             let reversed = probably_reversed(self.plan.scene, &self.plan.starts[0]);
-            let positions = self.prolonged(self.plan.coarsest_level(), x);
+            let positions = self.prolonged(self.plan.coarsest_level(), x.to_vec());
             return Err(StaticsError::SeamNotClosed { seam, gap, force, reversed, positions });
         }
         Ok(())
@@ -234,7 +234,7 @@ impl Solve<'_> {
                 let gap = widest(x, pairs);
                 gap < self.plan.settings.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
             };
-            let mesh = LevelMesh { k: coarsest, sheet, layout: &self.plan.starts[coarsest] };
+            let mesh = LevelMesh { k: coarsest, is_open: true, sheet, layout: &self.plan.starts[coarsest] };
             let report = self.relax(mesh, &mut system, x, &options, &closed, progress)?;
             self.reports.push(report);
             pull *= GROWTH;
@@ -287,7 +287,7 @@ impl Solve<'_> {
             asleep: false,
             ..self.options()
         };
-        let mesh = LevelMesh { k: coarsest, sheet: &sheet, layout: &start };
+        let mesh = LevelMesh { k: coarsest, is_open: false, sheet: &sheet, layout: &start };
         let report = self.relax(mesh, &mut system, &mut x, &options, &|_, x| done(x), progress)?;
         self.reports.push(report);
         self.x = x;
@@ -338,7 +338,7 @@ impl Solve<'_> {
             ..self.options()
         };
         let layout = x.to_vec();
-        let mesh = LevelMesh { k: self.plan.coarsest_level(), sheet, layout: &layout };
+        let mesh = LevelMesh { k: self.plan.coarsest_level(), is_open: true, sheet, layout: &layout };
         let system = &mut self.open(sheet, continuation.first())?;
         let report = self.relax(mesh, system, x, &options, &|_, _| false, progress)?;
         self.reports.push(report);
