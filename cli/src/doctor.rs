@@ -7,7 +7,7 @@ use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
 use std::time::Instant;
 use toile_core::testkit::contract::check_registered;
-use toile_core::testkit::{Outcome, Trial, cases, folder, from_example, is_checked};
+use toile_core::testkit::{Trial, TrialOutcome, cases, folder, from_example, is_checked};
 use toile_core::{Card, Contract, Registry};
 
 /// How a stage fared.
@@ -189,9 +189,9 @@ fn examine(registry: &Registry, card: &Card) -> Result<Health, String> {
     let mut first = None;
     for case in cases(card) {
         match trial.run(&case.inputs) {
-            Outcome::Answered(_) => return Ok(Health::Works),
-            Outcome::Broken(fault) => return Err(format!("on {}, {fault}", case.name)),
-            Outcome::Refused(_, message) => first = first.or(Some(format!("{}: {message}", case.name))),
+            TrialOutcome::Answered(_) => return Ok(Health::Works),
+            TrialOutcome::Broken(fault) => return Err(format!("on {}, {fault}", case.name)),
+            TrialOutcome::Refused(_, message) => first = first.or(Some(format!("{}: {message}", case.name))),
         }
     }
     Ok(first.map_or(Health::Untried, Health::Refuses))

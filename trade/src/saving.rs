@@ -8,7 +8,7 @@ use crate::record::Clock;
 use serde::Serialize;
 use toile_core::cost::Predicted;
 use toile_core::decide::{Saves, Turn};
-use toile_pipeline::decide::Decided;
+use toile_pipeline::decide::StageDecision;
 use toile_pipeline::{Override, Pipeline};
 
 /// What a figure rests on.
@@ -90,7 +90,7 @@ pub struct Evidence<'a> {
 
 impl Evidence<'_> {
     /// What a decision saves, by the best that is known.
-    pub fn saving(&self, decided: &Decided) -> Saving {
+    pub fn saving(&self, decided: &StageDecision) -> Saving {
         self.measured(decided).unwrap_or_else(|| match decided.decision.saves {
             Saves::Share(share) => self.estimated(decided, share),
             Saves::Modelled => {
@@ -100,7 +100,7 @@ impl Evidence<'_> {
         })
     }
 
-    fn measured(&self, decided: &Decided) -> Option<Saving> {
+    fn measured(&self, decided: &StageDecision) -> Option<Saving> {
         let ablation = self.ablation?;
         let is_it =
             |r: &&Row| r.decided.stage == decided.stage && r.decided.decision.rule == decided.decision.rule;
@@ -115,13 +115,13 @@ impl Evidence<'_> {
     }
 
     /// The stage is expected to take what is left of it by the share.
-    fn estimated(&self, decided: &Decided, share: f64) -> Saving {
+    fn estimated(&self, decided: &StageDecision, share: f64) -> Saving {
         let left = self.seconds(self.pipeline, |stage| stage == decided.stage);
         let seconds = left.map(|s| s * share / (1.0 - share)).filter(|s| s.is_finite());
         Saving { share: Some(share), ..Saving::by(Basis::Estimated, seconds) }
     }
 
-    fn modelled(&self, decided: &Decided) -> Option<f64> {
+    fn modelled(&self, decided: &StageDecision) -> Option<f64> {
         match &decided.decision.turn {
             Turn::Also => self.seconds(self.pipeline, |stage| stage == decided.stage),
             Turn::Param { name, value } => {

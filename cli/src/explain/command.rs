@@ -10,7 +10,7 @@ use crate::validate::{Stood, quality_words, standings};
 use crate::{Streams, exit};
 use std::path::Path;
 use toile_core::{Feed, Node, Registry, StageError};
-use toile_pipeline::decide::{Decided, decisions};
+use toile_pipeline::decide::{StageDecision, decisions};
 use toile_pipeline::{Pipeline, RunError, RunOptions, plan};
 use toile_trade::ablate::Ablation;
 use toile_trade::cost::{Forecast, forecast_lines, predict};
@@ -46,7 +46,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
     exit::DONE
 }
 
-type Planned = (Vec<Option<String>>, Vec<Decided>);
+type Planned = (Vec<Option<String>>, Vec<StageDecision>);
 
 fn planned(args: &ExplainArgs, pipeline: &Pipeline) -> Result<Planned, RunError> {
     let options = RunOptions { until: args.until.clone(), ..RunOptions::default() };

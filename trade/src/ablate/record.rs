@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_core::decide::Tolerance;
 use toile_pipeline::Pipeline;
-use toile_pipeline::decide::Decided;
+use toile_pipeline::decide::StageDecision;
 
 /// The version of this form.
 pub const SCHEME: u32 = 1;
@@ -61,7 +61,7 @@ pub struct Cut {
 pub struct Unmeasured {
     /// The decision.
     #[serde(flatten)]
-    pub decided: Decided,
+    pub decided: StageDecision,
     /// The option that turns it round.
     pub turned: String,
 }
@@ -79,7 +79,7 @@ impl Ablation {
 pub struct Row {
     /// The decision.
     #[serde(flatten)]
-    pub decided: Decided,
+    pub decided: StageDecision,
     /// The option that turns it round.
     pub turned: String,
     /// Processor time of each run with it turned round, seconds.

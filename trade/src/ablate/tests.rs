@@ -5,7 +5,7 @@ use crate::errors::Millimetres;
 use crate::record::Machine;
 use std::time::Duration;
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
-use toile_pipeline::decide::Decided;
+use toile_pipeline::decide::StageDecision;
 
 fn change(p95: f64, same_bits: bool) -> Change {
     let mm = |x: f64| Millimetres { mean: x / 2.0, p95: x, max: 2.0 * x };
@@ -29,7 +29,7 @@ fn row(tolerance: Tolerance, change: Option<Change>, saved_s: &[f64]) -> Row {
         source: "Nyquist 1928".into(),
         turn: Turn::Param { name: "pixel".into(), value: "\"0 mm\"".into() },
     };
-    let decided = Decided { stage: "Mean".into(), decision };
+    let decided = StageDecision { stage: "Mean".into(), decision };
     Row {
         turned: decided.words("stages.Mean"),
         decided,
