@@ -6,7 +6,7 @@ use super::openings::{finished, openings};
 use super::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use toile_fixtures::cloth::{Capsules, Grid, garment, plain};
+use toile_fixtures::cloth::{Capsules, ClothGrid, garment, plain};
 
 const COLUMNS: usize = 240;
 const STIFFNESS: f64 = 500.0;
@@ -20,7 +20,8 @@ fn polygon(radius: f64) -> f64 {
 /// without weight.
 fn tube(radius: f64, strain: f64) -> Garment {
     let around = polygon(radius) / (1.0 + strain);
-    let grid = Grid { columns: COLUMNS, rows: 12, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };
+    let grid =
+        ClothGrid { columns: COLUMNS, rows: 12, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };
     let fabric = Arc::new(Fabric { area_density: 1e-9, ..(*plain(STIFFNESS, 50.0, 0.0)).clone() });
     let mut tube = garment(&[("tube", &grid)], &fabric);
     for (p, flat) in tube.positions.iter_mut().zip(&mut tube.rest) {

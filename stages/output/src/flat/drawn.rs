@@ -10,7 +10,7 @@ use nalgebra::Matrix2x3;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 use toile_flatten::care::boundary_chains;
-use toile_flatten::islands::{Chain, Piece as SurfacePiece, Seam as PieceSeam};
+use toile_flatten::islands::{Chain, SurfacePiece, SurfaceSeam as PieceSeam};
 
 /// A boundary vertex is a corner if its angle differs by more than this from a straight line,
 /// degrees.

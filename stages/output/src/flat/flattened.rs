@@ -13,11 +13,11 @@ use toile_flatten::care::{CareOptions, CareReport, Objective, SeamLengths, mirro
 use toile_flatten::distortion::distortion;
 use toile_flatten::flatteners::{Flattening, Placement, Tension};
 use toile_flatten::grain::Grain;
-use toile_flatten::surface::Surface;
+use toile_flatten::surface::PieceSurface;
 
 /// A flattener of one piece of a garment, whose panel has this number.
 pub(super) type Method<'a> =
-    dyn Fn(&Surface, &Placement, usize) -> Result<Flattening, FlattenError> + Sync + 'a;
+    dyn Fn(&PieceSurface, &Placement, usize) -> Result<Flattening, FlattenError> + Sync + 'a;
 
 /// What is asked of a flattener.
 pub(super) struct Request<'a> {
@@ -140,7 +140,7 @@ fn cut(garment: &Garment, sheet: &Sheet, paths: &[Vec<Vec<u32>>]) -> Result<Shee
 }
 
 /// The direction in space of the cloth's warp where the flat shape is known, else the y of space.
-fn grain(surface: &Surface, rest: &[Point2]) -> Grain {
+fn grain(surface: &PieceSurface, rest: &[Point2]) -> Grain {
     let mut mean = Vector3::zeros();
     for t in surface.triangles() {
         let [a, b, c] = t.map(|v| rest[v as usize]);
@@ -213,7 +213,7 @@ fn crossed(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
 
 impl Care {
     /// The options of pattern care; a corner is what the drawing takes for one.
-    pub(super) fn options(&self, newton: toile_flatten::newton::NewtonOptions) -> CareOptions {
+    pub(super) fn options(&self, newton: toile_flatten::newton::StoppingLimits) -> CareOptions {
         let defaults = CareOptions::default();
         let on = |share: f64| if self.mirror { share } else { 0.0 };
         CareOptions {

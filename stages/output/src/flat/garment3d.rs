@@ -11,7 +11,7 @@ use toile_body::Up;
 use toile_core::prelude::*;
 use toile_drape::fabric::Preset;
 use toile_flatten::SurfaceError;
-use toile_flatten::islands::{Piece as SurfacePiece, Pieces, islands_by_labels};
+use toile_flatten::islands::{SurfacePiece, SurfacePieces, islands_by_labels};
 
 /// The unit of a garment's file.
 #[choice]
@@ -220,7 +220,7 @@ impl Garment3d {
     fn garment(
         &self,
         mended: &Mended,
-        pieces: &Pieces,
+        pieces: &SurfacePieces,
         by: PiecesBy,
         fabric: Option<&Fabric>,
     ) -> Result<Garment, StageError> {
@@ -314,7 +314,7 @@ fn area([a, b, c]: [Point2; 3]) -> f64 {
 }
 
 /// Names by the group or material of most of a piece's triangles, else by number.
-fn names(mended: &Mended, pieces: &Pieces, by: PiecesBy) -> Vec<String> {
+fn names(mended: &Mended, pieces: &SurfacePieces, by: PiecesBy) -> Vec<String> {
     let mesh = &mended.mesh;
     let (of, words) = match by {
         PiecesBy::Materials => (&mesh.materials, &mesh.material_names),

@@ -10,13 +10,13 @@ use nalgebra::Matrix2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::prelude::*;
-use toile_flatten::islands::{Chain, Pieces, Seam as PieceSeam, islands_by_labels};
+use toile_flatten::islands::{Chain, SurfacePieces, SurfaceSeam as PieceSeam, islands_by_labels};
 
 /// Pieces that know the garment that they came from.
 #[derive(Debug, Clone)]
 pub(super) struct Sheet {
     /// The pieces; their vertices are nodes: the least of the garment's vertices that are joined.
-    pub(super) pieces: Pieces,
+    pub(super) pieces: SurfacePieces,
     /// For each piece its name, unlike all others.
     pub(super) names: Vec<String>,
     /// For each piece the garment's panel.
@@ -114,11 +114,11 @@ impl Sheet {
     }
 
     /// The pieces without the seams whose sides were cut to unlike lengths.
-    pub(super) fn without_gathers(&self, garment: &Garment) -> Pieces {
+    pub(super) fn without_gathers(&self, garment: &Garment) -> SurfacePieces {
         let known = self.known_seams(garment);
         let is_even = |k: &Option<usize>| k.is_none_or(|k| garment.seams[k].kind != SeamKind::Gathered);
         let even = self.pieces.seams.iter().zip(&known).filter(|(_, k)| is_even(k));
-        Pieces { pieces: self.pieces.pieces.clone(), seams: even.map(|(s, _)| s.clone()).collect() }
+        SurfacePieces { pieces: self.pieces.pieces.clone(), seams: even.map(|(s, _)| s.clone()).collect() }
     }
 
     /// The sheet of a garment as it was cut.
@@ -239,7 +239,7 @@ pub(super) struct Part {
 }
 
 /// A garment at rest of pieces; vertices that stand for one are joined, and every seam is closed.
-pub(super) fn assembled(pieces: &Pieces, parts: Vec<Part>) -> Garment {
+pub(super) fn assembled(pieces: &SurfacePieces, parts: Vec<Part>) -> Garment {
     let (mut positions, mut rest, mut triangles, mut panels) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut first_of: BTreeMap<u32, u32> = BTreeMap::new();

@@ -7,7 +7,7 @@ use crate::file_names::check_name;
 use rayon::prelude::*;
 use serde::Serialize;
 use toile_core::prelude::*;
-use toile_flatten::distortion::{Distortion, Spread, distortion};
+use toile_flatten::distortion::{Distortion, StrainSpread, distortion};
 
 /// Writes how far the flat pieces are from the garment, in both directions, and draws them coloured
 /// by strain.
@@ -140,7 +140,7 @@ struct SpreadRow {
 }
 
 impl SpreadRow {
-    fn of(s: Spread) -> Self {
+    fn of(s: StrainSpread) -> Self {
         Self { signed_mean: s.signed_mean, mean: s.mean, p99: s.p99, max: s.max }
     }
 }
