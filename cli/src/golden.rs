@@ -15,7 +15,7 @@ use toile_core::{Artifact, Registry, read_file, read_text};
 use toile_pipeline::golden::{Arithmetic, Comparison, GoldenSheet, compare, parse};
 use toile_pipeline::{Pipeline, RunError, write_files};
 use toile_stages::engine::arithmetic;
-use toile_stages::render::{Form, Picture, pictures_of};
+use toile_stages::render::{ArtifactPicture, PictureForm, pictures_of};
 
 /// The longest golden sheet, bytes.
 const LONGEST: u64 = 64 << 20;
@@ -266,11 +266,11 @@ const PICTURE_HEIGHT: u32 = 240;
 
 /// Every picture of one artifact as a file named after its section.
 fn artifact_pictures(stem: &str, title: &str, artifact: &dyn Artifact) -> Vec<OutputFile> {
-    let file = |(i, picture): (usize, Picture)| {
+    let file = |(i, picture): (usize, ArtifactPicture)| {
         let (extension, bytes) = match picture.form {
-            Form::Png(bytes) => ("png", bytes),
-            Form::Jpeg(bytes) => ("jpg", bytes),
-            Form::Svg(text) => ("svg", text.into_bytes()),
+            PictureForm::Png(bytes) => ("png", bytes),
+            PictureForm::Jpeg(bytes) => ("jpg", bytes),
+            PictureForm::Svg(text) => ("svg", text.into_bytes()),
         };
         OutputFile { path: format!("{stem}/{}.{i}.{extension}", title.replace(' ', ".")), bytes }
     };

@@ -14,7 +14,7 @@ use serde::Serialize;
 use std::path::Path;
 use toile_core::StageError;
 use toile_core::artifact::OutputFile;
-use toile_stages::render::{Scene, View, garment_model};
+use toile_stages::render::{ModelScene, View, garment_model};
 
 /// Height of a garment's picture, px: folds show, and forty settings make a page of a megabyte.
 const HEIGHT: u32 = 300;
@@ -33,7 +33,7 @@ pub(crate) fn pictures(key: &str, ran: &Ran) -> Vec<OutputFile> {
             &plain
         }
     };
-    let scene = Scene::draft(model);
+    let scene = ModelScene::draft(model);
     let shot = |(name, view): (&str, View)| {
         let mut bytes = Vec::new();
         let encoder = JpegEncoder::new_with_quality(&mut bytes, QUALITY);

@@ -1,7 +1,7 @@
 //! Fit on shapes whose figures are known exactly.
 #![allow(clippy::unwrap_used)]
 
-use super::load::Load;
+use super::load::ClothLoad;
 use super::openings::{finished, openings};
 use super::*;
 use std::f64::consts::TAU;
@@ -41,7 +41,7 @@ fn cylinder(radius: f64) -> Collider {
 fn a_tube_around_a_cylinder_presses_with_tension_over_radius() {
     for (radius, strain) in [(0.15, 0.02), (0.05, 0.1), (0.3, 0.004)] {
         let tube = tube(radius, strain);
-        let load = Load::of(&tube, Some(&cylinder(radius)), &Context::quiet()).unwrap();
+        let load = ClothLoad::of(&tube, Some(&cylinder(radius)), &Context::quiet()).unwrap();
         let hoop = load.strain[COLUMNS][1];
         assert!((hoop / strain - 1.0).abs() < 0.01, "strain {hoop} of {strain}");
         let tension = load.tension[COLUMNS][1];
@@ -55,7 +55,7 @@ fn a_tube_around_a_cylinder_presses_with_tension_over_radius() {
 
 #[test]
 fn cloth_off_the_body_has_no_pressure() {
-    let load = Load::of(&tube(0.15, 0.02), Some(&cylinder(0.1)), &Context::quiet()).unwrap();
+    let load = ClothLoad::of(&tube(0.15, 0.02), Some(&cylinder(0.1)), &Context::quiet()).unwrap();
     assert!(load.pressure.iter().all(Option::is_none));
 }
 

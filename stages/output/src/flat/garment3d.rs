@@ -5,7 +5,7 @@ use super::file::{
     Mended, NO_POINT, PiecesBy, RawMesh, cloth_of_ours, labels, leave_out, lies, list, open_cloth, read_glb,
     read_obj, wholes,
 };
-use super::sheet::{Part, assembled, unlike};
+use super::sheet::{PieceDetails, assembled, unlike};
 use std::sync::Arc;
 use toile_body::Up;
 use toile_core::prelude::*;
@@ -231,9 +231,9 @@ impl Garment3d {
         let names = names(mended, pieces, by);
         let part = |(piece, name): (&SurfacePiece, String)| {
             let rest = self.rest(mended, piece, &name)?;
-            Ok(Part { name, fabric: fabric.clone(), rest, photo_px: Vec::new() })
+            Ok(PieceDetails { name, fabric: fabric.clone(), rest, photo_px: Vec::new() })
         };
-        let parts: Vec<Part> =
+        let parts: Vec<PieceDetails> =
             pieces.pieces.iter().zip(names).map(part).collect::<Result<_, StageError>>()?;
         Ok(assembled(pieces, parts))
     }
