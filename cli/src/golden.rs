@@ -21,16 +21,16 @@ use toile_stages::render::{ArtifactPicture, PictureForm, pictures_of};
 const LONGEST: u64 = 64 << 20;
 
 /// The places of a pipeline's golden.
-struct Places {
+struct GoldenPlaces {
     folder: PathBuf,
     stem: String,
 }
 
-impl Places {
+impl GoldenPlaces {
     fn of(pipeline: &Path) -> Self {
         let folder = pipeline.parent().unwrap_or(Path::new(".")).join("goldens");
         let stem = pipeline.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        Places { folder, stem }
+        GoldenPlaces { folder, stem }
     }
 
     fn sheet(&self) -> PathBuf {
@@ -41,7 +41,7 @@ impl Places {
 /// Runs every pipeline and names the first stage that differs from its golden.
 pub(crate) fn check(args: &CheckArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(&args.pipelines, &args.overrides, registry, streams, |pipeline, path, streams| {
-        let places = Places::of(path);
+        let places = GoldenPlaces::of(path);
         let golden = match read(&places.sheet()) {
             Ok(Some(golden)) => golden,
             Ok(None) if args.allow_missing => {
@@ -99,7 +99,7 @@ fn read(sheet: &Path) -> Result<Option<GoldenSheet>, String> {
 /// Records new goldens, each from two equal runs.
 pub(crate) fn accept(args: &AcceptArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(&args.pipelines, &Overrides::default(), registry, streams, |pipeline, path, streams| {
-        let places = Places::of(path);
+        let places = GoldenPlaces::of(path);
         let (log, sheet) = match twice(pipeline, streams)? {
             Ok(recorded) => recorded,
             Err(why) => {
@@ -201,7 +201,7 @@ fn report(
     path: &Path,
     found: &Comparison,
     log: &RunLog,
-    places: &Places,
+    places: &GoldenPlaces,
     out: &Path,
     streams: &mut Streams<'_>,
 ) -> u8 {
@@ -232,7 +232,7 @@ fn report(
 }
 
 /// The golden's picture and today's for every artifact that differs.
-fn both_pictures(found: &Comparison, log: &RunLog, places: &Places) -> Vec<OutputFile> {
+fn both_pictures(found: &Comparison, log: &RunLog, places: &GoldenPlaces) -> Vec<OutputFile> {
     let differing: Vec<&str> = found.differences.iter().map(|d| d.section.as_str()).collect();
     let mut files = pictures(log, &GoldenSheet::of(log, ""), Some(&differing), &places.stem);
     let was: Vec<OutputFile> = files

@@ -53,7 +53,7 @@ pub fn lines(told: &[Told]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::record::Clock;
-    use crate::saving::Basis;
+    use crate::saving::SavingBasis;
     use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 
     #[test]
@@ -70,7 +70,7 @@ mod tests {
         };
         let decided = StageDecision { stage: "Mean".into(), decision };
         let saving = Saving {
-            basis: Basis::Modelled,
+            basis: SavingBasis::Modelled,
             seconds: Some(2.0),
             clock: Clock::Wall,
             noise_s: None,

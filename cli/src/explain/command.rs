@@ -4,9 +4,9 @@ use crate::args::ExplainArgs;
 use crate::explain::json::json;
 use crate::explain::words::Explained;
 use crate::failing::fail_run;
-use crate::trading::costs::Known;
+use crate::trading::costs::KnownCosts;
 use crate::trading::measuring::{default_folder, failed, opened, quality};
-use crate::validate::{Stood, quality_words, standings};
+use crate::validate::{JudgedQuality, quality_words, standings};
 use crate::{Streams, exit};
 use std::path::Path;
 use toile_core::{Feed, Node, Registry, StageError};
@@ -32,7 +32,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
         Ok(ablation) => ablation,
         Err(e) => return failed(&e, streams),
     };
-    let known = Known::of(&args.cache, args.threads);
+    let known = KnownCosts::of(&args.cache, args.threads);
     known.warning().iter().for_each(|warning| streams.warn(warning));
     let (costs, ablation) = (known.costs(), ablation.as_ref());
     let told = told(&Evidence { source: &source, pipeline: &pipeline, costs, ablation }, decided);
@@ -99,7 +99,7 @@ fn lines(explained: &Explained<'_>) -> Vec<String> {
 }
 
 /// `vest: 14 stages, quality Draft; qualities: Draft (10 mm), Fine (2 mm)`.
-fn title(pipeline: &Pipeline, qualities: &[Stood]) -> String {
+fn title(pipeline: &Pipeline, qualities: &[JudgedQuality]) -> String {
     let chosen = pipeline.quality.as_ref().map_or_else(String::new, |q| format!(", quality {q}"));
     let words = quality_words(qualities);
     let known = if words.is_empty() { words } else { format!("; qualities: {words}") };
