@@ -76,7 +76,7 @@ fn told(all: &[(&str, Option<Trial>)], best: usize) -> String {
         format!("{name}: {result}{taken}")
     };
     let lines: Vec<String> = all.iter().enumerate().map(one).collect();
-    format!("{} starts were sewn on the coarsest mesh. {}", all.len(), lines.join(". "))
+    format!("{} starts were sewn on a coarse mesh. {}", all.len(), lines.join(". "))
 }
 
 #[cfg(test)]
@@ -103,7 +103,7 @@ mod tests {
         let all = [(PLACED, trial(0.072, 0)), ("with the legs where the file puts them", trial(0.0, 0))];
         assert_eq!(
             told(&all, 1),
-            "2 starts were sewn on the coarsest mesh. as the pieces are placed: a seam stays 72 mm open. \
+            "2 starts were sewn on a coarse mesh. as the pieces are placed: a seam stays 72 mm open. \
              with the legs where the file puts them: all seams close and nothing crosses; taken"
         );
     }
