@@ -52,8 +52,9 @@ fn with_a_spring(check: impl FnOnce(System<'_>, Vec<Vec3>, Spring)) {
     let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
     let x = scene.positions.clone();
     let lowest = (0..x.len()).min_by(|&a, &b| x[a].y.total_cmp(&x[b].y)).unwrap();
-    let to = x[lowest] + Vec3::new(0.0, 0.1, 0.2);
-    let spring = Spring { node: Some(lowest as u32), to, stiffness: 500.0 };
+    // Towards the middle of the sheet, which is slack on the way.
+    let to = (x[lowest] + x.iter().sum::<Vec3>() / x.len() as f64) * 0.5;
+    let spring = Spring { node: Some(lowest as u32), to, stiffness: 5000.0 };
     system.forces.push(Box::new(spring));
     check(system, x, spring);
 }
@@ -94,7 +95,7 @@ fn a_spring_in_the_list_is_in_every_sum_and_in_a_subset() {
         system.update_contacts(&x);
         assert!((system.value(&x) - bare.value(&x) - spring.value(&x)).abs() < 1e-9);
         let pull = system.gradient(&x)[node] - bare.gradient(&x)[node];
-        assert!((pull - (x[node] - spring.to) * spring.stiffness).norm() < 1e-9);
+        assert!((pull - (x[node] - spring.to) * spring.stiffness).norm() < 1e-6);
         let active = (0..x.len()).map(|i| i == node).collect();
         let subdomain = Subdomain::of(&system, active);
         let own = subdomain.pick(&x);
