@@ -30,10 +30,7 @@ use std::time::Instant;
 type Vec3 = Vector3<f64>;
 
 /// Rounds at most in which nodes are moved out where triangles dip into the body.
-const CLEARANCE_ROUNDS: usize = 16;
-
-/// Share of its last raise that is added to what a node lacks again.
-const RAISE_GROWTH: f64 = 1.5;
+const CLEARANCE_ROUNDS: usize = 12;
 
 /// Dips that are less deep than this after a round are moved out without regard to forces, m.
 const SHALLOW_DIP: f64 = 1e-4;
@@ -146,24 +143,17 @@ impl<'a> Solve<'a> {
     ) -> Result<(), StaticsError> {
         let Some(body) = self.plan.body else { return Ok(()) };
         let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
-        // By how much the offset of each node grew in the last round.
-        let mut raises = vec![0.0; x.len()];
-        for _ in 0..CLEARANCE_ROUNDS {
+        for round in 0..CLEARANCE_ROUNDS {
             let Clearance { lacks, depth, triangles, .. } = clearance(mesh.sheet, body.surface, x);
             if triangles == 0 {
                 self.dip = Some(depth);
                 break;
             }
-            if raises.iter().any(|r| *r > 0.0) && depth < SHALLOW_DIP {
-                self.lift(mesh, body.surface, &system.pinned, x);
+            if round > 0 && depth < SHALLOW_DIP && self.lift(mesh, body.surface, &system.pinned, x) {
                 break;
             }
-            // Cloth under tension gives way to less than its offset asks for.
-            for (raise, lacks) in raises.iter_mut().zip(&lacks) {
-                *raise = if *lacks > 0.0 { lacks + RAISE_GROWTH * *raise } else { 0.0 };
-            }
             if let Some(contact) = system.get_mut::<BodyContact>() {
-                contact.offsets.iter_mut().zip(&raises).for_each(|(o, r)| *o += r);
+                contact.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
             let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
             self.reports.push(report);
@@ -172,12 +162,19 @@ impl<'a> Solve<'a> {
     }
 
     /// Moves nodes out of the body without regard to forces, where cloth does not cross more cloth
-    /// then.
-    fn lift(&self, mesh: LevelMesh<'_>, body: &dyn CollisionSurface, pinned: &[bool], x: &mut [Vec3]) {
-        let Some(lifted) = lifted(mesh.sheet, body, x, pinned, FARTHEST_LIFT) else { return };
-        if self.crossings(mesh.sheet, &lifted) <= self.crossings(mesh.sheet, x) {
-            x.copy_from_slice(&lifted);
-        }
+    /// then; returns whether it did.
+    fn lift(
+        &self,
+        mesh: LevelMesh<'_>,
+        body: &dyn CollisionSurface,
+        pinned: &[bool],
+        x: &mut [Vec3],
+    ) -> bool {
+        let lifted = lifted(mesh.sheet, body, x, pinned, FARTHEST_LIFT);
+        let crossings = |x: &[Vec3]| self.crossings(mesh.sheet, x);
+        let Some(lifted) = lifted.filter(|lifted| crossings(lifted) <= crossings(x)) else { return false };
+        x.copy_from_slice(&lifted);
+        true
     }
 
     /// The equilibrium of the finest level, with its nodes at `x`.
