@@ -3,7 +3,8 @@
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves,
 //! cuffs) are bent to cylinders around it, as the arrangement points of garment CAD do: halves
 //! before and behind the arm that are sewn to each other share one cylinder, whose girth is theirs,
-//! or the arm's where that is more. Flat halves of legs that stand beside the body's are swung
+//! or the arm's where that is more. A garment of flat pieces is raised until its shoulder seams clear
+//! the shoulders ([`boards`]), and measured around the body ([`girth`]). Flat halves of legs that stand beside the body's are swung
 //! before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised
 //! onto the floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto
 //! others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by
@@ -13,6 +14,9 @@
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
 //! sews them.
 
+mod boards;
+mod depth;
+mod girth;
 mod legs;
 mod limb;
 mod patches;
@@ -104,6 +108,7 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
+        stands_free(&worn, sleeves.as_deref(), &mut places, (&seams, &flat), (body, fabric), cx)?;
         if self.bend {
             let swung = legs::swing(&worn, body, &mut places, &seams, &offsets);
             swung.into_iter().for_each(|what| cx.note(what));
@@ -165,6 +170,27 @@ impl Arrange {
             by * 1e2
         ));
     }
+}
+
+/// Raises a garment whose shoulder seams would start in the shoulders, tells of other seams that
+/// the body stands between, and refuses what is too small.
+fn stands_free(
+    pattern: &Pattern,
+    sleeves: Option<&[(String, f64)]>,
+    places: &mut BTreeMap<String, Vec<Point3>>,
+    (seams, offsets): (&[GarmentSeam], &Offsets),
+    (body, fabric): (&Body, &Fabric),
+    cx: &Context,
+) -> Result<(), StageError> {
+    let sleeves: Vec<String> = sleeves.unwrap_or_default().iter().map(|s| s.0.clone()).collect();
+    let by = boards::raise(&boards::boards(pattern, &sleeves, places, seams, offsets), seams, body);
+    if by > 0.0 {
+        places.values_mut().flatten().for_each(|p| p.y += by);
+        cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
+    }
+    let boards = boards::boards(pattern, &sleeves, places, seams, offsets);
+    boards::in_the_way(&boards, seams, body).into_iter().for_each(|what| cx.warn(what));
+    girth::check(&boards, body, fabric)
 }
 
 /// The pieces stand where the body is.

@@ -1,7 +1,6 @@
 //! Whether the garment is large enough for the body.
 
-use super::lift::Board;
-use std::collections::BTreeSet;
+use super::boards::Board;
 use toile_core::prelude::*;
 
 /// Line force at which cloth counts as stretched to its limit, N/m: a tight but wearable garment.
@@ -13,18 +12,8 @@ const STRETCH: (f64, f64) = (0.02, 0.6);
 /// lower at most, in steps, metres.
 const LOWER: (u32, f64) = (20, 0.005);
 
-/// A panel on its board with those of its vertices that are sewn.
-pub(crate) struct Cut<'a> {
-    /// Where it hangs.
-    pub board: Board,
-    /// The panel.
-    pub panel: &'a Panel,
-    /// Its sewn vertices.
-    pub sewn: BTreeSet<u32>,
-}
-
 /// Compares the garment's girth with the body's at bust, waist and hip, where it reaches them.
-pub(crate) fn check_girths(panels: &[Cut], body: &Body, fabric: &Fabric) -> Result<(), StageError> {
+pub(super) fn check(boards: &[Board<'_>], body: &Body, fabric: &Fabric) -> Result<(), StageError> {
     for level in ["bust", "waist", "hip"] {
         let Some(mark) = body.landmarks.get(&format!("{level}_front")) else { continue };
         let Some(&around) = body.measurements.get(level) else { continue };
@@ -32,7 +21,7 @@ pub(crate) fn check_girths(panels: &[Cut], body: &Body, fabric: &Fabric) -> Resu
         let waist = body.landmarks.get("waist_front").filter(|_| level == "bust");
         let least = waist.map_or(f64::NEG_INFINITY, |waist| f64::midpoint(mark.y, waist.y));
         let lower = (0..LOWER.0).map(|k| mark.y - f64::from(k) * LOWER.1).filter(|y| *y > least);
-        let Some(girth) = lower.filter_map(|y| garment_girth(panels, y)).next() else { continue };
+        let Some(girth) = lower.filter_map(|y| garment_girth(boards, y)).next() else { continue };
         if girth * (1.0 + stretch(fabric)) < around {
             return Err(too_small(level, girth, around));
         }
@@ -60,32 +49,31 @@ fn stretch(fabric: &Fabric) -> f64 {
     lo
 }
 
-/// Front and back chord together at height `y`; `None` where the garment does not close there.
-fn garment_girth(panels: &[Cut], y: f64) -> Option<f64> {
-    let side = |sign: f64| {
-        let chords = panels.iter().filter(|c| c.board.side == sign).filter_map(|c| chord(c, y));
-        chords.reduce(|a, b| a + b)
+/// Front and back chords together at height `y`; `None` where the garment does not close there.
+fn garment_girth(boards: &[Board<'_>], y: f64) -> Option<f64> {
+    let side = |before: bool| {
+        let chords = boards.iter().filter(|b| b.is_before() == before).filter_map(|b| chord(b, y));
+        chords.reduce(|a, b| Some(a? + b?))?
     };
-    Some(side(1.0)? + side(-1.0)?)
+    Some(side(true)? + side(false)?)
 }
 
-/// The width of the panel's trunk at height `y`: the stretch of its row nearest to its middle, so
-/// that hanging sleeves do not count; `None` where its ends are not sewn.
-fn chord(cut: &Cut, y: f64) -> Option<f64> {
-    let Cut { board, panel, sewn } = cut;
-    let lay = |v: u32| board.lay(panel.positions[v as usize]);
+/// The width of a piece at height `y`, if it reaches there: of the stretch of its row nearest to
+/// its middle, so that hanging sleeves do not count; of none where its ends are not sewn.
+fn chord(board: &Board<'_>, y: f64) -> Option<Option<f64>> {
+    let Board { panel, points, sewn, .. } = board;
     let boundary = &panel.boundary;
     let sides = (0..boundary.len()).map(|i| (boundary[i], boundary[(i + 1) % boundary.len()]));
     let crossing = |(v, w): (u32, u32)| {
-        let (a, b) = (lay(v), lay(w));
+        let (a, b) = (points[v as usize], points[w as usize]);
         let x = a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y);
         ((a.y >= y) != (b.y >= y)).then_some((x, sewn.contains(&v) && sewn.contains(&w)))
     };
     let mut crossings: Vec<(f64, bool)> = sides.filter_map(crossing).collect();
     crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let xs = || panel.positions.iter().map(|p| board.lay(*p).x);
+    let xs = || points.iter().map(|p| p.x);
     let middle = (xs().fold(f64::INFINITY, f64::min) + xs().fold(f64::NEG_INFINITY, f64::max)) / 2.0;
     let away = |c: &[(f64, bool)]| (c[0].0 - middle).max(middle - c[1].0).max(0.0);
     let trunk = crossings.chunks_exact(2).min_by(|a, b| away(a).total_cmp(&away(b)))?;
-    (trunk[0].1 && trunk[1].1).then_some(trunk[1].0 - trunk[0].0)
+    Some((trunk[0].1 && trunk[1].1).then_some(trunk[1].0 - trunk[0].0))
 }
