@@ -3,12 +3,13 @@
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves,
 //! cuffs) are bent to cylinders around it, as the arrangement points of garment CAD do: halves
 //! before and behind the arm that are sewn to each other share one cylinder, whose girth is theirs,
-//! or the arm's where that is more. A garment of flat pieces is raised until its shoulder seams clear
-//! the shoulders ([`boards`]), and measured around the body ([`girth`]). Flat halves of legs that stand beside the body's are swung
-//! before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised
-//! onto the floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto
-//! others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by
-//! names, seams and sizes ([`region`], [`stand`]).
+//! or the arm's where that is more. A garment of flat pieces is raised until its shoulder seams
+//! clear the shoulders ([`boards`]), and measured around the body ([`girth`]). Flat halves of legs
+//! that stand beside the body's are swung before them ([`legs`]). Poses that were made for a body
+//! whose origin is its middle are raised onto the floor. Pieces with pleats are folded first
+//! ([`pleats`]), and pieces that are sewn onto others are laid on them last ([`patches`]). A
+//! pattern in which no piece has a pose is placed by names, seams and sizes ([`region`],
+//! [`stand`]).
 //!
 //! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
@@ -27,6 +28,7 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
+use boards::Board;
 use limb::Limb;
 use region::{Decided, Region};
 use std::collections::BTreeMap;
@@ -108,7 +110,9 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
-        stands_free(&worn, sleeves.as_deref(), &mut places, (&seams, &flat), (body, fabric), cx)?;
+        let boards =
+            Flat { pattern: &worn, sleeves: names(sleeves.as_deref()), seams: &seams, offsets: &flat };
+        boards.raise(&mut places, body, cx);
         if self.bend {
             let swung = legs::swing(&worn, body, &mut places, &seams, &offsets);
             swung.into_iter().for_each(|what| cx.note(what));
@@ -123,6 +127,7 @@ impl Arrange {
                 bent.into_iter().for_each(|what| cx.note(what));
             }
         }
+        boards.check(&places, body, fabric, cx)?;
         for (name, of) in &folded {
             if let Some(places) = places.get_mut(name) {
                 of.deepen(places);
@@ -172,25 +177,45 @@ impl Arrange {
     }
 }
 
-/// Raises a garment whose shoulder seams would start in the shoulders, tells of other seams that
-/// the body stands between, and refuses what is too small.
-fn stands_free(
-    pattern: &Pattern,
-    sleeves: Option<&[(String, f64)]>,
-    places: &mut BTreeMap<String, Vec<Point3>>,
-    (seams, offsets): (&[GarmentSeam], &Offsets),
-    (body, fabric): (&Body, &Fabric),
-    cx: &Context,
-) -> Result<(), StageError> {
-    let sleeves: Vec<String> = sleeves.unwrap_or_default().iter().map(|s| s.0.clone()).collect();
-    let by = boards::raise(&boards::boards(pattern, &sleeves, places, seams, offsets), seams, body);
-    if by > 0.0 {
-        places.values_mut().flatten().for_each(|p| p.y += by);
-        cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
+/// The names of the sleeves that were placed without a pose.
+fn names(sleeves: Option<&[(String, f64)]>) -> Vec<String> {
+    sleeves.unwrap_or_default().iter().map(|s| s.0.clone()).collect()
+}
+
+/// What is asked of the pieces that stand flat.
+struct Flat<'a> {
+    pattern: &'a Pattern,
+    sleeves: Vec<String>,
+    seams: &'a [GarmentSeam],
+    offsets: &'a Offsets<'a>,
+}
+
+impl Flat<'_> {
+    fn boards<'p>(&'p self, places: &'p BTreeMap<String, Vec<Point3>>) -> Vec<Board<'p>> {
+        boards::boards(self.pattern, &self.sleeves, places, self.seams, self.offsets)
     }
-    let boards = boards::boards(pattern, &sleeves, places, seams, offsets);
-    boards::in_the_way(&boards, seams, body).into_iter().for_each(|what| cx.warn(what));
-    girth::check(&boards, body, fabric)
+
+    /// Raises a garment whose shoulder seams would start in the shoulders.
+    fn raise(&self, places: &mut BTreeMap<String, Vec<Point3>>, body: &Body, cx: &Context) {
+        let by = boards::raise(&self.boards(places), self.seams, body);
+        if by > 0.0 {
+            places.values_mut().flatten().for_each(|p| p.y += by);
+            cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
+        }
+    }
+
+    /// Tells of seams that the body stands between, and refuses what is too small.
+    fn check(
+        &self,
+        places: &BTreeMap<String, Vec<Point3>>,
+        body: &Body,
+        fabric: &Fabric,
+        cx: &Context,
+    ) -> Result<(), StageError> {
+        let boards = self.boards(places);
+        boards::in_the_way(&boards, self.seams, body).into_iter().for_each(|what| cx.warn(what));
+        girth::check(&boards, body, fabric)
+    }
 }
 
 /// The pieces stand where the body is.

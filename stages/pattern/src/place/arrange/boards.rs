@@ -1,8 +1,8 @@
 //! Pieces that stand flat before the body and behind it, and the seams between them.
 //!
-//! A garment that starts with its shoulder seams in the shoulders would be sewn through them. All of
-//! it is raised until they are free. Where the body stands between the sides of another seam, as an
-//! arm does that is spread otherwise than the sleeve, it is told. Cost: some milliseconds.
+//! A garment that starts with its shoulder seams in the shoulders would be sewn through them. It is
+//! raised as a whole until they are free. Where the body stands between the sides of another seam,
+//! as an arm does that is spread otherwise than the sleeve, it is told. Cost: some milliseconds.
 
 use super::depth::DepthMap;
 use crate::place::sew::Offsets;
@@ -25,6 +25,7 @@ pub(super) struct Board<'a> {
     /// Its sewn vertices.
     pub sewn: BTreeSet<u32>,
     first: usize,
+    is_leg: bool,
 }
 
 impl Board<'_> {
@@ -47,27 +48,34 @@ pub(super) fn boards<'a>(
     seams: &[GarmentSeam],
     offsets: &Offsets<'a>,
 ) -> Vec<Board<'a>> {
+    let part = |name: &str| pattern.piece(name).and_then(|p| p.body_part);
     let is_worn_there = |name: &str| {
-        let part = pattern.piece(name).and_then(|p| p.body_part);
-        !matches!(part, Some(BodyPart::Arm | BodyPart::Head)) && !sleeves.iter().any(|s| s == name)
+        !matches!(part(name), Some(BodyPart::Arm | BodyPart::Head)) && !sleeves.iter().any(|s| s == name)
     };
     let all: BTreeSet<usize> = seams.iter().flat_map(|s| &s.pairs).flatten().map(|v| *v as usize).collect();
     let board = |(name, points): (&'a String, &'a Vec<Point3>)| {
         let (first, panel) = *offsets.get(name.as_str())?;
         let z = points.first()?.z;
         let sewn = all.range(first..first + points.len()).map(|v| (v - first) as u32).collect();
-        points.iter().all(|p| (p.z - z).abs() < FLAT).then_some(Board { panel, points, sewn, first })
+        points.iter().all(|p| (p.z - z).abs() < FLAT).then_some(Board {
+            panel,
+            points,
+            sewn,
+            first,
+            is_leg: part(name) == Some(BodyPart::Leg),
+        })
     };
     let found: Option<Vec<Board<'a>>> =
         places.iter().filter(|(name, _)| is_worn_there(name)).map(board).collect();
     found.unwrap_or_default()
 }
 
-/// For each seam the places of its pairs that lie on boards on either side of the body.
+/// For each seam the places of its pairs that lie on either side of the trunk.
 type Threads<'s> = Vec<(&'s str, Vec<[Point3; 2]>)>;
 
 fn threads<'s>(boards: &[Board<'_>], seams: &'s [GarmentSeam]) -> Threads<'s> {
-    let find = |v: u32| boards.iter().find_map(|b| Some((b.is_before(), b.place(v)?)));
+    let trunk = || boards.iter().filter(|b| !b.is_leg);
+    let find = |v: u32| trunk().find_map(|b| Some((b.is_before(), b.place(v)?)));
     let across = |[a, b]: &[u32; 2]| {
         let ((one, p), (other, q)) = (find(*a)?, find(*b)?);
         (one != other).then_some([p, q])
