@@ -4,12 +4,11 @@
 //! cuffs) are bent to cylinders around it, as the arrangement points of garment CAD do: halves
 //! before and behind the arm that are sewn to each other share one cylinder, whose girth is theirs,
 //! or the arm's where that is more. A garment of flat pieces is raised until its shoulder seams
-//! clear the shoulders ([`boards`]), and measured around the body ([`girth`]). Flat halves of legs
-//! that stand beside the body's are swung before them ([`legs`]). Poses that were made for a body
-//! whose origin is its middle are raised onto the floor. Pieces with pleats are folded first
-//! ([`pleats`]), and pieces that are sewn onto others are laid on them last ([`patches`]). A
-//! pattern in which no piece has a pose is placed by names, seams and sizes ([`region`],
-//! [`stand`]).
+//! clear the shoulders ([`boards`]). Flat halves of legs that stand beside the body's are swung
+//! before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised
+//! onto the floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto
+//! others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by
+//! names, seams and sizes ([`region`], [`stand`]).
 //!
 //! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
@@ -17,7 +16,6 @@
 
 mod boards;
 mod depth;
-mod girth;
 mod legs;
 mod limb;
 mod patches;
@@ -127,7 +125,7 @@ impl Arrange {
                 bent.into_iter().for_each(|what| cx.note(what));
             }
         }
-        boards.check(&places, body, fabric, cx)?;
+        boards.in_the_way(&places, body).into_iter().for_each(|what| cx.warn(what));
         for (name, of) in &folded {
             if let Some(places) = places.get_mut(name) {
                 of.deepen(places);
@@ -192,7 +190,7 @@ struct Flat<'a> {
 
 impl Flat<'_> {
     fn boards<'p>(&'p self, places: &'p BTreeMap<String, Vec<Point3>>) -> Vec<Board<'p>> {
-        boards::boards(self.pattern, &self.sleeves, places, self.seams, self.offsets)
+        boards::boards(self.pattern, &self.sleeves, places, self.offsets)
     }
 
     /// Raises a garment whose shoulder seams would start in the shoulders.
@@ -204,17 +202,9 @@ impl Flat<'_> {
         }
     }
 
-    /// Tells of seams that the body stands between, and refuses what is too small.
-    fn check(
-        &self,
-        places: &BTreeMap<String, Vec<Point3>>,
-        body: &Body,
-        fabric: &Fabric,
-        cx: &Context,
-    ) -> Result<(), StageError> {
-        let boards = self.boards(places);
-        boards::in_the_way(&boards, self.seams, body).into_iter().for_each(|what| cx.warn(what));
-        if places.len() > boards.len() { Ok(()) } else { girth::check(&boards, body, fabric) }
+    /// A sentence for each seam that the body stands between.
+    fn in_the_way(&self, places: &BTreeMap<String, Vec<Point3>>, body: &Body) -> Vec<String> {
+        boards::in_the_way(&self.boards(places), self.seams, body)
     }
 }
 

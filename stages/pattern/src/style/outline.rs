@@ -9,7 +9,7 @@
 use super::block::template::fit::Fit;
 use super::block::template::flat::Layer;
 use super::block::template::form::{Form, LONG, TEE, VEST};
-use super::block::{Block, BlockStyle, Fitted, LAY, Stand, no_front};
+use super::block::{Block, BlockStyle, Fitted, LAY, Stand, check_wearable, no_front};
 use super::sewing::{is_back, pairs, sew};
 use nalgebra::Rotation2;
 use toile_core::artifact::Outline as Shape;
@@ -23,6 +23,9 @@ const TILT: [f64; 2] = [4.0, 8.0];
 /// within this share of the shorter edge that it ends.
 const REACH: f64 = 0.06;
 const OF_EDGE: f64 = 0.4;
+/// The shoulder of a garment without sleeves reaches no farther from the axis than so many times
+/// the armpit.
+const BEYOND: f64 = 1.2;
 
 /// What the garment is.
 #[choice]
@@ -113,7 +116,10 @@ impl Outline {
         }
         let seams: Vec<String> = template.sewn();
         let seams = pairs(&outlines, &seams.iter().map(String::as_str).collect::<Vec<_>>(), cx);
-        laid.iter().for_each(|l| tell_tilt(l, cx));
+        for l in &laid {
+            tell_tilt(l, cx);
+            check_wearable(template.name, template.form, &l.fitted.lying, body, None)?;
+        }
         let named = laid.iter().map(|l| (l.panel.to_owned(), l.named.clone())).collect();
         let (outlines, plan) = sew(&named, seams, cx)?;
         let mut pattern = Pattern::of_outlines("outlines", outlines.iter(), &plan.seams);
@@ -186,13 +192,21 @@ fn laid<'a>(
     let found = block.best(panel, outline, None, vec![(template.name, template.form)], cx)?;
     block.explains(panel, &found, cx)?;
     let (.., fitted) = found;
-    let named = named(template, panel, outline, &fitted).ok_or_else(|| {
-        StageError::invalid(format!(
-            "\"{panel}\" does not look like {}: its corners are not in their usual order",
-            template.form.word
-        ))
-    })?;
+    let refuse = |reason: &str| {
+        StageError::invalid(format!("\"{panel}\" does not look like {}: {reason}", template.form.word))
+    };
+    if has_sleeves(template, &fitted.lying) {
+        return Err(refuse("its shoulders reach far beyond its armpits, as sleeves do"));
+    }
+    let named = named(template, panel, outline, &fitted);
+    let named = named.ok_or_else(|| refuse("its corners are not in their usual order"))?;
     Ok(Laid { panel, fitted, named })
+}
+
+/// Whether what was taken for an armhole ends a sleeve.
+fn has_sleeves(template: &Template, lying: &Fit) -> bool {
+    let armhole = template.form.edges.iter().position(|e| e.name == "armhole");
+    armhole.is_some_and(|k| lying.sides.iter().any(|s| s[k].b.x > BEYOND * s[k].a.x))
 }
 
 /// The outline with its edges; `None` where their corners do not follow each other.

@@ -220,7 +220,8 @@ fn polygon(points: &[[f64; 2]]) -> Outline {
 }
 
 fn refusal(garment: &str, front: Outline) -> String {
-    run(garment, [("front".to_owned(), front)].into_iter().collect()).unwrap_err().message
+    let found = run(garment, [("front".to_owned(), front)].into_iter().collect());
+    found.err().map_or_else(|| "it is taken".to_owned(), |e| e.message)
 }
 
 #[test]
@@ -251,8 +252,10 @@ fn a_style_says_why_it_does_not_fit() {
     let neither = "the outlines are neither those of a vest nor those of a T-shirt";
     let no_vest = "\"front\" does not look like a vest: its sides run up to the shoulders without an armhole";
     let no_shirt = "\"front\" does not look like a T-shirt: its sides run up without an armpit";
+    let sleeves =
+        "\"front\" does not look like a vest: its shoulders reach far beyond its armpits, as sleeves do";
     let no_half = "the garment in \"front\" has no left and right half";
-    assert_eq!(said, [no_vest, no_shirt, neither, no_vest, no_shirt, no_vest, no_vest, no_half]);
+    assert_eq!(said, [no_vest, no_shirt, neither, sleeves, no_shirt, no_vest, no_vest, no_half]);
     let e = run("vest", [("front".to_owned(), polygon(&trousers))].into_iter().collect()).unwrap_err();
     let lay = "lay the garment flat and smooth, neck or waist up, sleeves and legs away from the body, all of it in the picture";
     let named = format!("{lay}; or let it be named: --set 'style.style=Auto'");
@@ -260,6 +263,20 @@ fn a_style_says_why_it_does_not_fit() {
     let e = run("either", [("front".to_owned(), polygon(&trousers))].into_iter().collect()).unwrap_err();
     let other = format!("{lay}; other garments are cut by a template: --set 'style=Block(style: Auto)'");
     assert_eq!(e.hint, Some(other));
+}
+
+#[test]
+fn an_outline_that_is_too_small_for_the_body_is_refused() {
+    let mut wide = body();
+    wide.measurements.insert("bust".to_owned(), 1.3);
+    let e = style("vest").run(set("vest", |o| o), &wide, &Context::quiet()).unwrap_err();
+    assert_eq!(e.message, "the garment is too small: its chest measures 99 cm around, the body's 130 cm");
+    assert_eq!(
+        e.hint.as_deref(),
+        Some(
+            "is the scale right? The garment is measured by it. If it is, take a mannequin that it fits: --set 'body=Fitting(style: Vest)'"
+        )
+    );
 }
 
 fn edge(text: &str) -> EdgeRef {

@@ -6,7 +6,7 @@
 
 use super::depth::DepthMap;
 use crate::place::sew::Offsets;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
 /// How far a garment is raised at most, and in what steps, metres.
@@ -20,17 +20,14 @@ const FLAT: f64 = 1e-6;
 
 /// A piece that stands flat.
 pub(super) struct Board<'a> {
-    pub panel: &'a Panel,
-    pub points: &'a [Point3],
-    /// Its sewn vertices.
-    pub sewn: BTreeSet<u32>,
+    points: &'a [Point3],
     first: usize,
     is_leg: bool,
 }
 
 impl Board<'_> {
     /// True before the body.
-    pub(super) fn is_before(&self) -> bool {
+    fn is_before(&self) -> bool {
         self.points.first().is_some_and(|p| p.z > 0.0)
     }
 
@@ -45,22 +42,17 @@ pub(super) fn boards<'a>(
     pattern: &Pattern,
     sleeves: &[String],
     places: &'a BTreeMap<String, Vec<Point3>>,
-    seams: &[GarmentSeam],
-    offsets: &Offsets<'a>,
+    offsets: &Offsets,
 ) -> Vec<Board<'a>> {
     let part = |name: &str| pattern.piece(name).and_then(|p| p.body_part);
     let is_worn_there = |name: &str| {
         !matches!(part(name), Some(BodyPart::Arm | BodyPart::Head)) && !sleeves.iter().any(|s| s == name)
     };
-    let all: BTreeSet<usize> = seams.iter().flat_map(|s| &s.pairs).flatten().map(|v| *v as usize).collect();
     let board = |(name, points): (&'a String, &'a Vec<Point3>)| {
-        let (first, panel) = *offsets.get(name.as_str())?;
+        let (first, _) = *offsets.get(name.as_str())?;
         let z = points.first()?.z;
-        let sewn = all.range(first..first + points.len()).map(|v| (v - first) as u32).collect();
         points.iter().all(|p| (p.z - z).abs() < FLAT).then_some(Board {
-            panel,
             points,
-            sewn,
             first,
             is_leg: part(name) == Some(BodyPart::Leg),
         })

@@ -42,6 +42,7 @@ use template::halves::Upright;
 use template::marks::missing;
 use toile_core::prelude::*;
 pub use waist::Waist;
+pub(super) use wearable::check as check_wearable;
 
 /// The share of the limit for a garment of which nobody has said what it is: a top whose sleeves
 /// lie against it looks a little like a skirt.
@@ -173,7 +174,7 @@ impl Block {
                 form.word
             ));
         }
-        wearable::check(name, form, &before.fit, body, photo("front"))?;
+        check_wearable(name, form, &before.fit, body, photo("front"))?;
         let mirrored = mirrored(front);
         let back = outlines.get("back").unwrap_or(&mirrored);
         let found = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
