@@ -49,6 +49,8 @@ impl Seams {
     pub(crate) fn run(
         &self,
         outlines: Set<Outline>,
+        // What these seams stand in the place of.
+        _plan: &SewingPlan,
         cx: &Context,
     ) -> Result<(Set<Outline>, SewingPlan), StageError> {
         let seams = self.seams.iter().map(SeamEntry::seam).collect();
@@ -58,7 +60,7 @@ impl Seams {
     /// Names of panels and edges, where photos and a built-in style make them.
     fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let seams: Vec<Seam> = self.seams.iter().map(SeamEntry::seam).collect();
-        let edges = placed.maker("outlines").and_then(edges_of);
+        let edges = placed.maker("plan").and_then(edges_of);
         misnamed(&seams, sides(&placed.sources()).as_deref(), edges.as_deref())
     }
 }

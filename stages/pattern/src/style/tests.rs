@@ -284,8 +284,8 @@ fn edge(text: &str) -> EdgeRef {
 }
 
 fn sewn(entries: Vec<SeamEntry>) -> Result<(Set<Outline>, SewingPlan), StageError> {
-    let (named, _) = run("vest", set("vest", |o| o)).unwrap();
-    Seams::of(entries).run(named, &Context::quiet())
+    let (named, plan) = run("vest", set("vest", |o| o)).unwrap();
+    Seams::of(entries).run(named, &plan, &Context::quiet())
 }
 
 fn fault(entry: fn(EdgeRef, EdgeRef) -> SeamEntry, a: &str, b: &str) -> (String, String) {
