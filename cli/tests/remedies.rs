@@ -94,19 +94,6 @@ fn a_garment_that_is_not_of_the_stated_kind() {
 }
 
 #[test]
-fn a_style_that_makes_no_pattern() {
-    mended(&Case {
-        pipeline: "photo.ron",
-        file: Some(("mine.jpg", photo::boxy_tee())),
-        set: &[PHOTO[0], PHOTO[1], "style=TShirt()"],
-        until: "Arrange",
-        code: 3,
-        told: "takes the pieces of a sewing pattern",
-        offered: &["style=Block(style: TShirt)"],
-    });
-}
-
-#[test]
 fn a_kind_that_is_said_to_the_style_alone() {
     mended(&Case {
         pipeline: "photo.ron",

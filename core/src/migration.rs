@@ -16,6 +16,8 @@ pub enum Change {
     Stage {
         /// The new name.
         to: &'static str,
+        /// The argument that says what the old name said, `style: Vest`; empty where there is none.
+        with: &'static str,
     },
     /// A parameter has another name, and its value may be written in another way.
     Param {
@@ -38,7 +40,12 @@ pub enum Change {
 impl Migration {
     /// The stage `from` is now called `to`.
     pub const fn stage(from: &'static str, to: &'static str) -> Self {
-        Migration { stage: from, change: Change::Stage { to } }
+        Self::joined(from, to, "")
+    }
+
+    /// The stage `from` is now `to` with the argument `with`, `style: Vest`.
+    pub const fn joined(from: &'static str, to: &'static str, with: &'static str) -> Self {
+        Migration { stage: from, change: Change::Stage { to, with } }
     }
 
     /// The parameter `from` is now called `to`.

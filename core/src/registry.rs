@@ -57,7 +57,7 @@ pub struct Section {
 /// What stands in a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SectionValue {
-    /// Any stage of that role: `style: Vest()`.
+    /// Any stage of that role: `style: Block()`.
     Stage(Role),
     /// The value of one parameter of a given stage: `seams: [...]`.
     Table {
@@ -167,7 +167,7 @@ impl Registry {
         let mut names = vec![stage];
         // Names lead to older names; each change is taken once.
         for m in self.migrations.iter().rev() {
-            if matches!(m.change, Change::Stage { to } if names.contains(&to)) {
+            if matches!(m.change, Change::Stage { to, .. } if names.contains(&to)) {
                 names.push(m.stage);
             }
         }

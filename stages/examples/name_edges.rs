@@ -15,12 +15,13 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+use toile_core::artifact::Outline;
 use toile_core::prelude::*;
 use toile_core::{Inputs, Kind, PortValue};
 use toile_stages::binarise::GraphCut;
 use toile_stages::edges::Canny;
 use toile_stages::photo::decode;
-use toile_stages::style::{TShirt, Vest};
+use toile_stages::style::Outline as Cut;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some(shared) = std::env::var_os("TOILE_SHARED") else {
@@ -44,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         match outlined(&photos.join(format!("{name}.jpg"))) {
             Err(e) => println!("{name}: {e}"),
             Ok((photo, outline, seconds)) => {
-                let (outline, words) = match named(&outline, name.starts_with("tee")) {
+                let (outline, words) = match named(&outline) {
                     Ok(o) => o,
                     Err(why) => (typed(&outline)?, why),
                 };
@@ -70,25 +71,11 @@ fn outlined(file: &Path) -> Result<(Photo, Arc<dyn Artifact>, String), String> {
     Ok((typed(&photo)?, outline, seconds))
 }
 
-/// Names the edges by the likelier style first; the other's reason is told as well where none fits.
-fn named(outline: &Arc<dyn Artifact>, tee: bool) -> Result<(Outline, String), String> {
-    let mut styles: [(&str, Box<dyn Stage>); 2] =
-        [("vest", Box::new(Vest {})), ("T-shirt", Box::new(TShirt {}))];
-    if tee {
-        styles.reverse();
-    }
-    let mut why = Vec::new();
-    for (name, style) in styles {
-        match styled(style.as_ref(), outline) {
-            Ok(o) => {
-                let edges: Vec<&str> = o.edges.iter().map(|e| e.name.as_str()).collect();
-                let words = format!("{name}: {}", edges.join(" "));
-                return Ok((o, words));
-            }
-            Err(e) => why.push(e),
-        }
-    }
-    Err(why.join("; "))
+/// Names the edges by the style that suits them better; the reason where none does.
+fn named(outline: &Arc<dyn Artifact>) -> Result<(Outline, String), String> {
+    let named = styled(&Cut::default(), outline)?;
+    let edges: Vec<String> = named.edges.iter().map(|e| e.name.clone()).collect();
+    Ok((named, edges.join(" ")))
 }
 
 fn photo(bytes: &[u8], file: &Path) -> Result<Arc<dyn Artifact>, String> {
@@ -116,9 +103,13 @@ fn one(stage: &dyn Stage, inputs: Vec<&Arc<dyn Artifact>>) -> Result<Arc<dyn Art
 
 fn styled(style: &dyn Stage, outline: &Arc<dyn Artifact>) -> Result<Outline, String> {
     let set = BTreeMap::from([("front".to_owned(), outline.clone())]);
-    let inputs = Inputs(vec![Some(PortValue::Set(Kind("outline"), set))]);
+    let neck = ("neck_left".to_owned(), Point3::new(0.06, 1.45, 0.0));
+    let body =
+        Body { positions: vec![], triangles: vec![], landmarks: [neck].into(), measurements: [].into() };
+    let body: Arc<dyn Artifact> = Arc::new(body);
+    let inputs = Inputs(vec![Some(PortValue::Set(Kind("outline"), set)), Some(PortValue::One(body))]);
     let out = style.run_ports(&inputs, &Context::quiet()).map_err(|e| e.to_string())?;
-    match out.first() {
+    match out.get(1) {
         Some(PortValue::Set(_, set)) => set.get("front").map_or(Err("no front".into()), typed),
         _ => Err("the style gave no set".into()),
     }

@@ -92,11 +92,11 @@ fn photos_that_the_style_does_not_take_are_told_by_name() {
     };
     let (code, text) = said(&[("\"front\":", "\"fornt\":")]);
     assert_eq!(code, 3, "{text}");
-    assert!(text.contains("Photos: `Vest` takes no photo named \"fornt\""), "{text}");
+    assert!(text.contains("Photos: `Outline` takes no photo named \"fornt\""), "{text}");
     assert!(text.contains("help: did you mean \"front\"?"), "{text}");
     let (code, text) = said(&[("\"back\":", "\"lining\":")]);
     assert_eq!(code, 0, "{text}");
-    assert!(text.contains("Photos: `Vest` makes nothing of the photo \"lining\""), "{text}");
+    assert!(text.contains("Photos: `Outline` makes nothing of the photo \"lining\""), "{text}");
     assert!(text.contains("the photo \"front\" has no other side, and its piece stays unsewn"), "{text}");
     assert!(text.contains("or write `\"back\": MirrorOf(\"front\")`"), "{text}");
     let (code, text) = said(&[]);

@@ -4,7 +4,8 @@ use std::fs;
 use toile_tests::{PIPELINES, pipeline, root, toile};
 
 /// As the first versions wrote it: LaplacianEdges is Laplacian now, Rest is StaticEquilibrium,
-/// Refine is Subdivide; parameters have other names, `tugs` of the stitcher is gone.
+/// Refine is Subdivide, Place is Arrange, Vest a style of Outline; parameters have other names,
+/// `tugs` of the stitcher and `ease` of the placement are gone.
 const OLD: &str = r#"// My vest.
 (
     photos: { "front": (file: "front.jpg", width: "52 cm"), "back": MirrorOf("front") },
@@ -40,6 +41,8 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
     assert_eq!(refused.code, 3);
     for words in [
         "the stage `LaplacianEdges` is now called `Laplacian`",
+        "the stage `Vest` is now `Outline(style: Vest)`",
+        "the stage `Place` is now called `Arrange`",
         "the parameter `tugs` was removed: seams close at the speed `closing`",
         "`toile migrate` rewrites the file to the new names",
     ] {
@@ -47,8 +50,10 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
     }
 
     let changes = format!(
-        "{name}: line 9: stage LaplacianEdges -> Laplacian\n\
-         {name}: line 11: Place: ease -> start_offset\n\
+        "{name}: line 4: stage Vest -> Outline(style: Vest)\n\
+         {name}: line 9: stage LaplacianEdges -> Laplacian\n\
+         {name}: line 11: stage Place -> Arrange\n\
+         {name}: line 11: Arrange: ease removed: pieces start flat, 4 cm off the trunk and as high as their shoulder seams need\n\
          {name}: line 14: SpringStitcher: tugs removed: seams close at the speed `closing`\n\
          {name}: line 17: stage Rest -> StaticEquilibrium\n\
          {name}: line 17: StaticEquilibrium: graded -> bending_continuation\n\
@@ -70,7 +75,8 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
             .replace("Rest", "StaticEquilibrium")
             .replace("graded", "bending_continuation")
             .replace("Refine", "Subdivide")
-            .replace("ease:", "start_offset:")
+            .replace("Place(ease: \"2 cm\")", "Arrange()")
+            .replace("Vest()", "Outline(style: Vest)")
     );
     assert_eq!(toile(&["validate", &name]).code, 0, "{}", toile(&["validate", &name]).err);
     assert_eq!(toile(&["migrate", &name]).out, format!("{name}: up to date\n"));
@@ -117,12 +123,13 @@ fn what_validate_refuses_is_not_called_up_to_date() {
         .replace("Rest", "StaticEquilibrium")
         .replace("graded", "bending_continuation")
         .replace("Refine", "Subdivide")
-        .replace("ease:", "start_offset:");
+        .replace("Place(ease: \"2 cm\")", "Arrange(clearance: \"2 cm\")")
+        .replace("Vest()", "Outline(style: Vest)");
     fs::copy(pipeline("samples/vest/front.jpg"), dir.path().join("front.jpg")).unwrap();
     for (right, wrong, words) in [
         ("Otsu()", "Otzu()", "unknown stage `Otzu`"),
         ("\"cotton poplin\"", "\"coton poplin\"", "there is no fabric preset \"coton poplin\""),
-        ("start_offset: \"2 cm\"", "start_offset: 2", "the length 2 has no unit"),
+        ("clearance: \"2 cm\"", "clearance: 2", "the length 2 has no unit"),
     ] {
         fs::write(&file, new.replace(right, wrong)).unwrap();
         for more in [&["migrate", "--check", &name][..], &["migrate", &name]] {

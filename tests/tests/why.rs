@@ -21,7 +21,7 @@ fn the_cause_is_the_field_that_changed() {
     assert_eq!(
         why(&["PlaneSmoother", "--set", "stages.GridMesher.edge=\"20 mm\""]).out,
         "PlaneSmoother: would run: upstream \"GridMesher\" would run again\n  \
-         since GridMesher: would run: edge 16 mm -> 20 mm; upstream \"Vest\" unchanged\n"
+         since GridMesher: would run: edge 16 mm -> 20 mm; upstream \"Outline\" unchanged\n"
     );
     let json: Value = serde_json::from_str(
         &why(&["GridMesher", "--set", "stages.GridMesher.edge=\"20 mm\"", "--json"]).out,

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `(name: "vest", stages: [...])` | `{"name": "vest", "stages": [...]}` |
 //! | `Otsu(bias: 3)` | `{"Otsu": {"bias": 3}}` |
-//! | `Vest()` | `{"Vest": {}}` |
+//! | `Canny()` | `{"Canny": {}}` |
 //! | `Preset("poplin")`, a single value without a name | `{"Preset": "poplin"}` |
 //! | `Eight`, a choice | `"Eight"` |
 //! | `Sauvola(k: 0.1)`, a choice with values | `{"Sauvola": {"k": 0.1}}` |

@@ -52,7 +52,7 @@ pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;
 pub use picture::{GrayImage, Picture, RgbImage};
 pub use sewing::gauge::{CHORD_TOLERANCE, Gauge};
-pub use sewing::plan::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
+pub use sewing::plan::{EdgeRef, Seam, SewingPlan};
 pub use sewing::seam_kind::{PleatFold, SeamKind};
 pub use sewing::weld::join_pairs;
 pub use store::digest::{Digest, Digester};

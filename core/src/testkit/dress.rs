@@ -137,7 +137,7 @@ pub fn pattern() -> Pattern {
     }
 }
 
-/// Seams at shoulders and sides, panels before and behind the body.
+/// Seams at shoulders and sides.
 pub fn plan() -> SewingPlan {
     let seam = |edge: &str| Seam {
         a: EdgeRef { panel: "front".into(), edge: edge.into() },
@@ -145,16 +145,7 @@ pub fn plan() -> SewingPlan {
         kind: SeamKind::Matched,
         reversed: false,
     };
-    let place = |behind| PanelPlacement {
-        limb: Limb::Torso,
-        behind,
-        anchor: Point2::new(0.0, PANEL[1]),
-        landmark: "neck_base_back",
-    };
-    SewingPlan {
-        seams: ["shoulder_left", "shoulder_right", "side_left", "side_right"].map(seam).into(),
-        placements: [("front".to_owned(), place(false)), ("back".to_owned(), place(true))].into(),
-    }
+    SewingPlan { seams: ["shoulder_left", "shoulder_right", "side_left", "side_right"].map(seam).into() }
 }
 
 /// Two panels before and behind the body, their seams open.

@@ -47,7 +47,7 @@ fn sizes_are_foreseen_before_anything_runs() {
     for (name, mm) in [("vest.ron", 16), ("vest.ron", 30), ("tshirt.ron", 12)] {
         let pipeline = loaded(name, &[edge(mm)]);
         let foreseen = foresee(&pipeline, &|_, _| None);
-        for (stage, fact) in made(&pipeline, "Place") {
+        for (stage, fact) in made(&pipeline, "Arrange") {
             let foreseen = &foreseen[pipeline.find(&stage).unwrap()].made;
             for (quantity, fact) in fact.iter() {
                 let ratio = foreseen.get(quantity).unwrap() / fact;
@@ -208,7 +208,7 @@ fn springs_are_measured_on_garments_cut_along_their_outline() {
         let file = format!("springs_{kind}.ron");
         let text = std::fs::read_to_string(root().join("tests/costs").join(&file)).unwrap();
         let springs = load(&text, &file, &root().join("tests/costs"), &toile::registry(), &[]).unwrap();
-        assert!(springs.find("SpringDraper").is_some() && springs.find("Place").is_some(), "{file}");
+        assert!(springs.find("SpringDraper").is_some() && springs.find("Outline").is_some(), "{file}");
         assert!(springs.find("StaticEquilibrium").is_none(), "{file}");
     }
 }

@@ -245,7 +245,7 @@ fn explain_gives_one_json_object() {
     assert_eq!((&mesher["runs"], mesher["role"].as_str()), (&Value::Bool(true), Some("mesher")));
     assert_eq!(
         (mesher["takes"][0]["kind"].as_str(), mesher["takes"][0]["from"].as_str()),
-        (Some("outline"), Some("Vest"))
+        (Some("outline"), Some("Outline"))
     );
     for figure in ["wall_s", "peak_bytes"] {
         let e = &mesher["predicted"][figure];

@@ -145,7 +145,7 @@ fn the_schema_refuses_what_the_loader_refuses() {
         ("BvhCollider()", "BvhCollider(volume: Box)"),
         ("NeighbourhoodMean()", "NeighbourhoodMean(radius: 1.5)"),
         ("PlaneSmoother()", "PlaneSmoother(lambda: -0.5)"),
-        ("style: Vest()", "style: Otsu()"),
+        ("style: Outline(style: Vest)", "style: Otsu()"),
         ("fabric: Preset(", "fabrics: Preset("),
         ("StaticEquilibrium(", "Resting("),
     ] {

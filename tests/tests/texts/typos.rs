@@ -16,7 +16,7 @@ const SLIPS: [Slip; 32] = [
     ("PlaneSmoother(", "^PlaneSmother(", "unknown stage `PlaneSmother`", "did you mean `PlaneSmoother`?"),
     ("Subdivide(parts", "^Subdvide(parts", "unknown stage `Subdvide`", "did you mean `Subdivide`?"),
     ("GarmentObj(", "^GarmentOjb(", "unknown stage `GarmentOjb`", "did you mean `GarmentObj`?"),
-    ("style: Vest()", "style: ^Vset()", "unknown stage `Vset`", "did you mean `Vest`?"),
+    ("style: Outline(", "style: ^Outlne(", "unknown stage `Outlne`", "did you mean `Outline`?"),
     ("body: Mannequin(", "body: ^Manequin(", "unknown stage `Manequin`", "did you mean `Mannequin`?"),
     ("smooth: 1", "^smoth: 1", "unknown parameter `smoth`", "did you mean `smooth`?"),
     ("hysteresis: true", "^hysterisis: true", "unknown parameter `hysterisis`", "did you mean `hysteresis`?"),
@@ -25,12 +25,7 @@ const SLIPS: [Slip; 32] = [
     ("fabric: Preset", "^fabirc: Preset", "unknown field `fabirc`", "did you mean `fabric`?"),
     ("texture: Check", "texture: ^Chekc", "`texture` wants ", "did you mean `Check`?"),
     // values
-    (
-        "start_offset: \"2 cm\"",
-        "start_offset: ^2",
-        "`start_offset`: the length 2 has no unit; write \"2 mm\" or \"2 cm\"",
-        "",
-    ),
+    ("edge: \"16 mm\"", "edge: ^16", "`edge`: the length 16 has no unit; write \"16 mm\" or \"16 cm\"", ""),
     ("smooth: 1", "smooth: ^9", "`smooth` is 9, above its greatest value ", ""),
     ("smooth: 1", "smooth: ^\"1\"", "`smooth` wants a number, found `\"1\"`", ""),
     ("hysteresis: true", "hysteresis: ^yes", "`hysteresis` wants true | false, found `yes`", ""),
@@ -56,16 +51,11 @@ const SLIPS: [Slip; 32] = [
     ),
     ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),
     // commas, colons, quotes and brackets
-    ("start_offset: \"2 cm\"),", "start_offset: \"2 cm\")^", "a comma is missing after `Place(...)`", ""),
+    ("edge: \"16 mm\"),", "edge: \"16 mm\")^", "a comma is missing after `GridMesher(...)`", ""),
     ("height: \"172 cm\",", "height: \"172 cm\"^", "a comma is missing after `\"172 cm\"`", ""),
     ("smooth: 1", "smooth^ 1", "a colon is missing after `smooth`", "write `smooth: ...`"),
-    ("start_offset: \"2 cm\"", "start_offset: ^\"2 cm", "this text is never closed", "write `\"` at its end"),
-    (
-        "start_offset: \"2 cm\"",
-        "start_offset: ^2 cm",
-        "`2 cm` is a text and stands in quotes",
-        "write `\"2 cm\"`",
-    ),
+    ("edge: \"16 mm\"", "edge: ^\"16 mm", "this text is never closed", "write `\"` at its end"),
+    ("edge: \"16 mm\"", "edge: ^16 mm", "`16 mm` is a text and stands in quotes", "write `\"16 mm\"`"),
     ("Glb()", "^Glb", "`Glb` needs brackets", "write `Glb()`"),
     ("(smooth: 1)", "^(smooth: 1", "this `(` is never closed", "write `)` before `"),
     // what stands twice, and settings of qualities

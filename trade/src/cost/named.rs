@@ -17,9 +17,11 @@ pub(super) fn key(node: &Node, foreseen: &Size) -> String {
     d.finish().short()
 }
 
-/// The kind of garment that a pipeline makes: the name of its first style, which names the edges;
-/// empty without one.
+/// The kind of garment that a pipeline makes: what its first style, which names the edges, is told
+/// that it is, `style: Vest`, else the name of that stage; empty without one.
 pub(super) fn style(pipeline: &Pipeline) -> String {
-    let style = pipeline.nodes.iter().find(|n| n.card.role == Role::Style);
-    style.map_or_else(String::new, |n| n.card.name.to_owned())
+    let Some(node) = pipeline.nodes.iter().find(|n| n.card.role == Role::Style) else { return String::new() };
+    let params = node.stage.params();
+    let told = params.split(['(', ',', ')']).find_map(|p| p.trim().strip_prefix("style: "));
+    told.unwrap_or(node.card.name).to_owned()
 }

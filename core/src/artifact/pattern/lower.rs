@@ -26,7 +26,7 @@ const BEND: f64 = 30.0;
 pub struct Lowered {
     /// The outline of each piece, its edges named; in the piece's own coordinates.
     pub outlines: BTreeMap<String, Outline>,
-    /// The seams, edge to edge; no placements, which are another stage's work.
+    /// The seams, edge to edge.
     pub plan: SewingPlan,
     /// What was decided on the way, a sentence each: seams that are gathered.
     pub notes: Vec<String>,
@@ -81,7 +81,7 @@ impl Pattern {
         }
         share_gauges(&mut outlines, &seams);
         notes.extend(told(&gathers));
-        Ok(Lowered { outlines, plan: SewingPlan { seams, placements: BTreeMap::new() }, notes, warnings })
+        Ok(Lowered { outlines, plan: SewingPlan { seams }, notes, warnings })
     }
 }
 

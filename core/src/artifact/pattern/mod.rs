@@ -5,6 +5,7 @@
 mod chain;
 mod check;
 mod curve;
+mod drawn;
 mod lower;
 mod lowering_error;
 mod piece;

@@ -1,9 +1,7 @@
-//! Which edges are sewn to which, and where each panel goes on the body.
+//! Which edges are sewn to which.
 
-use crate::artifact::store::sound::finite;
 use crate::artifact::{Artifact, ArtifactType, Kind, Measures, SeamKind};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// An edge of a panel, written `"front.shoulder_left"` in a pipeline file.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -63,39 +61,11 @@ impl Seam {
     }
 }
 
-/// The part of the body that a panel covers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Limb {
-    /// Chest and back, with the shoulders (and the upper arms where the panel has sleeves).
-    Torso,
-    /// From the waist down.
-    Legs,
-    /// The wearer's left arm.
-    LeftArm,
-    /// The wearer's right arm.
-    RightArm,
-}
-
-/// Where one panel starts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PanelPlacement {
-    /// The part of the body it covers.
-    pub limb: Limb,
-    /// True behind the body. Panel coordinates are as seen from outside, so the panel is turned.
-    pub behind: bool,
-    /// Pattern point that lies on `landmark`.
-    pub anchor: crate::artifact::Point2,
-    /// The landmark's name on the body, such as `neck_base`.
-    pub landmark: &'static str,
-}
-
-/// The seams of a garment and the place of each of its panels.
+/// The seams of a garment.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SewingPlan {
     /// Seams, in the order in which they are reported.
     pub seams: Vec<Seam>,
-    /// Placement by panel name.
-    pub placements: BTreeMap<String, PanelPlacement>,
 }
 
 impl ArtifactType for SewingPlan {
@@ -110,13 +80,12 @@ impl Artifact for SewingPlan {
 
     fn measures(&self) -> Measures {
         let mut m = Measures::new();
-        m.count("seams", self.seams.len()).count("panels", self.placements.len());
+        m.count("seams", self.seams.len());
         m
     }
 
     fn check(&self) -> Result<(), String> {
-        self.seams.iter().try_for_each(|s| s.kind.check())?;
-        finite("anchor", self.placements.values().map(|p| &p.anchor.coords))
+        self.seams.iter().try_for_each(|s| s.kind.check())
     }
 
     fn record(&self) -> Option<crate::artifact::store::Record<'_>> {

@@ -1,14 +1,12 @@
 //! Records of plans and judgements: fabrics, seams, phases, figures, finished files.
 
-use super::flat::{value, word};
 use super::{Reader, Record, Stored};
 use crate::artifact::{
-    Air, Curve, EdgeRef, Fabric, Figures, GarmentFigures, GirthFigures, Limb, OutputFile, OutputFiles,
-    PanelFigures, PanelPlacement, PenetrationFigures, Phase, Phases, Seam, SeamKind, SewingPlan, Shortfall,
-    StrainFigures, Vector3,
+    Air, Curve, EdgeRef, Fabric, Figures, GarmentFigures, GirthFigures, OutputFile, OutputFiles,
+    PanelFigures, PenetrationFigures, Phase, Phases, Seam, SeamKind, SewingPlan, Shortfall, StrainFigures,
+    Vector3,
 };
 use crate::error::ErrorCode;
-use crate::text::intern;
 use std::collections::BTreeMap;
 
 impl Fabric {
@@ -64,27 +62,18 @@ pub(super) fn kind_of(r: &Reader<'_>) -> Result<SeamKind, String> {
     SeamKind::of(&r.text("kind")?, &figures)
 }
 
-const LIMBS: [(&str, Limb); 4] = [
-    ("torso", Limb::Torso),
-    ("legs", Limb::Legs),
-    ("left arm", Limb::LeftArm),
-    ("right arm", Limb::RightArm),
-];
-
 impl SewingPlan {
     pub(crate) fn fields(&self) -> Record<'_> {
         Record::new()
             .records("seams", self.seams.iter().map(seam_fields))
-            .records("placements", self.placements.iter().map(|(name, p)| placement_fields(name, p)))
+            // Older plugins ask for it.
+            .records("placements", [])
     }
 }
 
 impl Stored for SewingPlan {
     fn from_record(r: &Reader<'_>) -> Result<Self, String> {
-        Ok(SewingPlan {
-            seams: r.records("seams")?.map(|s| seam_of(&s)).collect::<Result<_, _>>()?,
-            placements: r.records("placements")?.map(|p| placement_of(&p)).collect::<Result<_, _>>()?,
-        })
+        Ok(SewingPlan { seams: r.records("seams")?.map(|s| seam_of(&s)).collect::<Result<_, _>>()? })
     }
 }
 
@@ -104,25 +93,6 @@ pub(super) fn edge_fields(e: &EdgeRef) -> Record<'_> {
 
 pub(super) fn edge_of(r: &Reader<'_>) -> Result<EdgeRef, String> {
     Ok(EdgeRef { panel: r.text("panel")?, edge: r.text("edge")? })
-}
-
-fn placement_fields<'a>(name: &'a str, p: &'a PanelPlacement) -> Record<'a> {
-    Record::new()
-        .text("panel", name)
-        .text("limb", word(&LIMBS, &p.limb))
-        .flag("behind", p.behind)
-        .owned("anchor", [p.anchor])
-        .text("landmark", p.landmark)
-}
-
-fn placement_of(r: &Reader<'_>) -> Result<(String, PanelPlacement), String> {
-    let placement = PanelPlacement {
-        limb: value(&LIMBS, r, "limb")?,
-        behind: r.flag("behind")?,
-        anchor: r.one("anchor")?,
-        landmark: intern(&r.text("landmark")?),
-    };
-    Ok((r.text("panel")?, placement))
 }
 
 impl Phases {

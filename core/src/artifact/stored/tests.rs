@@ -168,12 +168,6 @@ pub(in crate::artifact) fn model() -> Model {
 
 pub(in crate::artifact) fn plan() -> SewingPlan {
     let edge = |text: &str| EdgeRef::try_from(text.to_owned()).unwrap();
-    let placement = PanelPlacement {
-        limb: Limb::LeftArm,
-        behind: true,
-        anchor: Point2::new(0.0, 0.5),
-        landmark: "neck_base",
-    };
     SewingPlan {
         seams: vec![Seam {
             a: edge("front.hem"),
@@ -181,7 +175,6 @@ pub(in crate::artifact) fn plan() -> SewingPlan {
             kind: SeamKind::Matched,
             reversed: true,
         }],
-        placements: BTreeMap::from([("front".to_owned(), placement)]),
     }
 }
 

@@ -22,7 +22,7 @@ pub enum Needs {
 pub fn needs(stage: &str) -> Option<Needs> {
     match stage {
         "Block" | "Fitting" => Some(Needs::Front),
-        "Vest" | "TShirt" => Some(Needs::Both),
+        "Outline" => Some(Needs::Both),
         _ => None,
     }
 }

@@ -3,7 +3,8 @@
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves,
 //! cuffs) are bent to cylinders around it, as the arrangement points of garment CAD do: halves
 //! before and behind the arm that are sewn to each other share one cylinder, whose girth is theirs,
-//! or the arm's where that is more. Flat halves of legs that stand beside the body's are swung
+//! or the arm's where that is more. A garment of flat pieces is raised until its shoulder seams
+//! clear the shoulders ([`boards`]). Flat halves of legs that stand beside the body's are swung
 //! before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised
 //! onto the floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto
 //! others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by
@@ -13,6 +14,8 @@
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
 //! sews them.
 
+mod boards;
+mod depth;
 mod legs;
 mod limb;
 mod moving;
@@ -24,10 +27,14 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
-use moving::{Moving, Places};
+use boards::Board;
+use moving::Moving;
 use region::{Decided, Region};
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
+
+/// The vertices of each piece in space.
+type Places = BTreeMap<String, Vec<Point3>>;
 
 /// Places of every piece, and the sleeves among those that had none, each with the hand of its arm.
 type Stood = (Places, Option<Vec<(String, f64)>>);
@@ -107,6 +114,9 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
+        let boards =
+            Flat { pattern: &worn, sleeves: names(sleeves.as_deref()), seams: &seams, offsets: &flat };
+        boards.raise(&mut places, body, cx);
         let finished = |mut places: Places| -> Result<(Vec<Point3>, Vec<String>), StageError> {
             for (name, of) in &folded {
                 if let Some(places) = places.get_mut(name) {
@@ -135,6 +145,7 @@ impl Arrange {
             }
             false => (places, Vec::new()),
         };
+        boards.in_the_way(&places, body).into_iter().for_each(|what| cx.warn(what));
         let (points, laid) = finished(places)?;
         told.into_iter().chain(laid).for_each(|what| cx.note(what));
         cx.check()?;
@@ -161,7 +172,7 @@ impl Arrange {
     }
 
     /// Raises poses that were made around a body's middle.
-    fn raise(&self, places: &mut BTreeMap<String, Vec<Point3>>, body: &Body, cx: &Context) {
+    fn raise(&self, places: &mut Places, body: &Body, cx: &Context) {
         let heights = || places.values().flatten().map(|p| p.y);
         let (lowest, highest) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
         let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
@@ -179,8 +190,41 @@ impl Arrange {
     }
 }
 
+/// The names of the sleeves that were placed without a pose.
+fn names(sleeves: Option<&[(String, f64)]>) -> Vec<String> {
+    sleeves.unwrap_or_default().iter().map(|s| s.0.clone()).collect()
+}
+
+/// What is asked of the pieces that stand flat.
+struct Flat<'a> {
+    pattern: &'a Pattern,
+    sleeves: Vec<String>,
+    seams: &'a [GarmentSeam],
+    offsets: &'a Offsets<'a>,
+}
+
+impl Flat<'_> {
+    fn boards<'p>(&'p self, places: &'p Places) -> Vec<Board<'p>> {
+        boards::boards(self.pattern, &self.sleeves, places, self.offsets)
+    }
+
+    /// Raises a garment whose shoulder seams would start in the shoulders.
+    fn raise(&self, places: &mut Places, body: &Body, cx: &Context) {
+        let by = boards::raise(&self.boards(places), self.seams, body);
+        if by > 0.0 {
+            places.values_mut().flatten().for_each(|p| p.y += by);
+            cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
+        }
+    }
+
+    /// A sentence for each seam that the body stands between.
+    fn in_the_way(&self, places: &Places, body: &Body) -> Vec<String> {
+        boards::in_the_way(&self.boards(places), self.seams, body)
+    }
+}
+
 /// The pieces stand where the body is.
-fn at_the_body(places: &BTreeMap<String, Vec<Point3>>, body: &Body) -> Result<(), StageError> {
+fn at_the_body(places: &Places, body: &Body) -> Result<(), StageError> {
     let span = |all: &mut dyn Iterator<Item = f64>| {
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
     };
@@ -221,7 +265,7 @@ fn at_the_body(places: &BTreeMap<String, Vec<Point3>>, body: &Body) -> Result<()
 }
 
 /// The vertices of every panel where its piece's pose puts them, in the order of the offsets.
-fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<BTreeMap<String, Vec<Point3>>, StageError> {
+fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<Places, StageError> {
     let place = |(name, (_, panel)): (&&str, &(usize, &Panel))| {
         let piece = pattern.piece(name).ok_or_else(|| unknown(name))?;
         let pose = piece.pose.ok_or_else(|| {

@@ -10,14 +10,12 @@
 //! milliseconds. Limits: a curve that is symmetric about the middle of the neck points; a garment
 //! photographed closed and without any seam at its neck gets the usual depth, with a warning.
 
-use super::BlockStyle;
 use super::closed_front::ClosedFront;
-use super::drawn::{of_outlines, redrawn};
-use super::naming::is_back;
+use super::drawn::redrawn;
 use super::replaced::replaced;
+use super::sewing::is_back;
 use rayon::prelude::*;
 use toile_core::prelude::*;
-use toile_core::{Feed, Node};
 
 /// Depths that are tried, as shares of the neck's width: first, last, step.
 const DEPTHS: (f64, f64, f64) = (0.28, 1.3, 0.01);
@@ -100,32 +98,9 @@ impl Neckline {
         let cut = self.cut_all(&outlines, &photos, body, cx)?;
         let pattern = match pattern {
             Some(pattern) => redrawn(pattern, &outlines, &cut)?,
-            None => of_outlines(&cut, plan),
+            None => Pattern::of_outlines("outlines", cut.iter(), plan.map_or(&[], |plan| &plan.seams)),
         };
         Ok((cut, pattern))
-    }
-
-    /// A pattern that is drawn from outlines says nothing of the body, and is not arranged around
-    /// it.
-    fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
-        let Some(style) = placed.maker("plan").filter(|_| placed.maker("pattern").is_none()) else {
-            return Vec::new();
-        };
-        let is_fed = |n: &&Node| {
-            let from_here = |f: &Feed| matches!(f, Feed::Node { node, .. } if *node == placed.index);
-            n.card.inputs.iter().zip(&n.inputs).any(|(port, f)| port.kind == Pattern::KIND && from_here(f))
-        };
-        let places = |n: &&Node| n.card.role == Role::Placement;
-        let Some(placement) = placed.nodes.iter().filter(places).find(is_fed) else { return Vec::new() };
-        let name = style.card.name;
-        let inner = if BlockStyle::knows(name) { format!("style: {name}") } else { String::new() };
-        vec![
-            StageError::invalid(format!(
-                "`{}` takes the pieces of a sewing pattern, and `style: {name}()` cuts along the outline",
-                placement.id
-            ))
-            .hint(format!("--set 'style=Block({inner})' makes a pattern; `{name}()` goes with `Place()`")),
-        ]
     }
 }
 
@@ -610,7 +585,7 @@ mod tests {
         let deep = Neckline { depth: Some(Length::m(0.1)), ..Neckline::default() };
         for outlines in [both(&shirt()), halves()] {
             let photos = || both(&photo(0.05));
-            let (uncut, own) = (of_outlines(&outlines, None), Context::quiet());
+            let (uncut, own) = (Pattern::of_outlines("shirt", outlines.iter(), &[]), Context::quiet());
             let (cut, pattern) =
                 deep.run(outlines.clone(), Some(&uncut), None, photos(), None, &own).unwrap();
             assert_ne!(pattern, uncut);
@@ -623,7 +598,7 @@ mod tests {
     #[test]
     fn a_pattern_of_other_pieces_is_refused() {
         let deep = Neckline { depth: Some(Length::m(0.1)), ..Neckline::default() };
-        let other = of_outlines(&halves(), None);
+        let other = Pattern::of_outlines("shirt", halves().iter(), &[]);
         let e = deep
             .run(both(&shirt()), Some(&other), None, both(&photo(0.05)), None, &Context::quiet())
             .unwrap_err();

@@ -1,7 +1,7 @@
 //! Seams that a pipeline file lists itself.
 
-use super::edges_of;
-use super::sewing::{misnamed, placement, sew};
+use super::outline::edges_of;
+use super::sewing::{misnamed, sew};
 use toile_core::prelude::*;
 use toile_image::photo::sides;
 
@@ -49,21 +49,18 @@ impl Seams {
     pub(crate) fn run(
         &self,
         outlines: Set<Outline>,
-        plan: &SewingPlan,
+        // What these seams stand in the place of.
+        _plan: &SewingPlan,
         cx: &Context,
     ) -> Result<(Set<Outline>, SewingPlan), StageError> {
         let seams = self.seams.iter().map(SeamEntry::seam).collect();
-        let place = |(name, o): (&str, &Outline)| {
-            let found = plan.placements.get(name).copied().unwrap_or_else(|| placement(name, o));
-            (name.to_owned(), found)
-        };
-        sew(&outlines, seams, outlines.iter().map(place).collect(), cx)
+        sew(&outlines, seams, cx)
     }
 
     /// Names of panels and edges, where photos and a built-in style make them.
     fn faults(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let seams: Vec<Seam> = self.seams.iter().map(SeamEntry::seam).collect();
-        let edges = placed.maker("plan").and_then(|style| edges_of(style.card.name));
+        let edges = placed.maker("plan").and_then(edges_of);
         misnamed(&seams, sides(&placed.sources()).as_deref(), edges.as_deref())
     }
 }

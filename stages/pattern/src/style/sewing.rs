@@ -5,7 +5,6 @@
 //! other: its threads must not be longer than those of the opposite pairing. Cost: linear in the
 //! edges.
 
-use super::naming::is_back;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,6 +20,11 @@ const EASE_WARNING: f64 = 0.01;
 const REVERSED: f64 = 1.25;
 /// Points on an edge at which its threads are measured.
 const THREADS: usize = 9;
+
+/// True for panels that lie behind the body.
+pub(super) fn is_back(panel: &str) -> bool {
+    panel.to_lowercase().contains("back")
+}
 
 /// The style's seams between `front` and `back`, for edges that both have.
 pub(super) fn pairs(outlines: &Set<Outline>, names: &[&str], cx: &Context) -> Vec<Seam> {
@@ -45,32 +49,10 @@ fn between(a: &str, b: &str, edge: &str) -> Seam {
     Seam { a: of(a), b: of(b), kind: SeamKind::Matched, reversed: false }
 }
 
-/// Places the panels of an upper-body style and sews them.
-pub(super) fn place_and_sew(
-    outlines: &Set<Outline>,
-    seams: Vec<Seam>,
-    cx: &Context,
-) -> Result<(Set<Outline>, SewingPlan), StageError> {
-    let placements = outlines.iter().map(|(name, o)| (name.to_owned(), placement(name, o))).collect();
-    sew(outlines, seams, placements, cx)
-}
-
-/// A panel's place: the point half-way between its neck points goes to the height of the body's.
-pub(super) fn placement(panel: &str, outline: &Outline) -> PanelPlacement {
-    let points = &outline.outer.points;
-    let (lo, hi) = outline.bounds();
-    let anchor = outline.edge("neck").map_or_else(
-        || Point2::new((lo.x + hi.x) / 2.0, hi.y),
-        |e| nalgebra::center(&points[e.start], &points[e.end]),
-    );
-    PanelPlacement { limb: Limb::Torso, behind: is_back(panel), anchor, landmark: "neck_base_back" }
-}
-
 /// Checks the seams and lets their edges agree on their divisions.
 pub(super) fn sew(
     outlines: &Set<Outline>,
     seams: Vec<Seam>,
-    placements: BTreeMap<String, PanelPlacement>,
     cx: &Context,
 ) -> Result<(Set<Outline>, SewingPlan), StageError> {
     let mut sewn: BTreeMap<String, Outline> =
@@ -86,11 +68,11 @@ pub(super) fn sew(
             used.push(side);
         }
         check_lengths(&sewn, seam, cx).map_err(|e| of_seam(e, i))?;
-        check_direction(&sewn, seam, &placements).map_err(|e| of_seam(e, i))?;
+        check_direction(&sewn, seam).map_err(|e| of_seam(e, i))?;
         agree(&mut sewn, seam);
     }
     let sewn = sewn.into_iter().map(|(k, o)| (k, Arc::new(o))).collect();
-    Ok((Set(sewn), SewingPlan { seams, placements }))
+    Ok((Set(sewn), SewingPlan { seams }))
 }
 
 /// Puts an error at the seam of that number, where the file lists seams.
@@ -193,17 +175,14 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
 }
 
 /// Refuses a seam whose threads would cross when both panels lie face to face on the body.
-fn check_direction(
-    outlines: &BTreeMap<String, Outline>,
-    seam: &Seam,
-    placements: &BTreeMap<String, PanelPlacement>,
-) -> Result<(), StageError> {
+fn check_direction(outlines: &BTreeMap<String, Outline>, seam: &Seam) -> Result<(), StageError> {
     let [a, b] = [&seam.a, &seam.b].map(|side| {
-        let placed = placements.get(&side.panel);
+        // As it is seen from before the wearer.
+        let hand = if is_back(&side.panel) { -1.0 } else { 1.0 };
         let points = find(outlines, side)?;
-        Ok::<_, StageError>(placed.map(|p| evenly(&points).map(|q| on_body(q, p))))
+        Ok::<_, StageError>(evenly(&points).map(|q| Point2::new(hand * q.x, q.y)))
     });
-    let (Some(a), Some(b)) = (a?, b?) else { return Ok(()) };
+    let (a, b) = (a?, b?);
     // Only the run of the edges counts, not how far the panels lie apart.
     let centre = |t: &[Point2; THREADS]| t.iter().map(|p| p.coords).sum::<Vector2>() / THREADS as f64;
     let apart = centre(&b) - centre(&a);
@@ -220,12 +199,6 @@ fn check_direction(
          that lie on each other, or write {better}(\"{}\", \"{}\")",
         seam.a, seam.b
     )))
-}
-
-/// Where a pattern point comes to lie, seen from before the wearer.
-fn on_body(p: Point2, placement: &PanelPlacement) -> Point2 {
-    let d = p - placement.anchor;
-    Point2::new(if placement.behind { -d.x } else { d.x }, d.y)
 }
 
 /// Points of a polyline at equal steps of its length, both ends included.

@@ -20,11 +20,11 @@ const FILE: &str = r#"(
 
 const VEST: &str = r#"(
     photos: { "front": (file: "a.jpg", width: "52 cm"), "back": MirrorOf("front") },
-    style: Vest(),
+    style: Outline(style: Vest),
     body: Mannequin(edge: "14 mm"),
     fabric: Preset("cotton poplin"),
     stages: [
-        Otsu(), Canny(), GridMesher(edge: "16 mm"), Place(), BvhCollider(thickness: "2 mm"), StaticEquilibrium(),
+        Otsu(), Canny(), GridMesher(edge: "16 mm"), Arrange(), BvhCollider(thickness: "2 mm"), StaticEquilibrium(),
     ],
 )"#;
 

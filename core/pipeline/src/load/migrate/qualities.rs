@@ -74,10 +74,8 @@ impl Migrator<'_> {
         match &segments[target.segments..] {
             [] => new.value = self.whole_stage(&o.value),
             [param, parts @ ..] => {
-                let stages: Vec<&str> = [Some(target.stage.as_str()), renamed(self.registry, &target.stage)]
-                    .into_iter()
-                    .flatten()
-                    .collect();
+                let now = renamed(self.registry, &target.stage).map(|now| now.name);
+                let stages: Vec<&str> = [Some(target.stage.as_str()), now].into_iter().flatten().collect();
                 let (param, value) = match self.followed(&stages, param, &o.value) {
                     Followed::Removed(why) => return MigratedSetting::Removed(why.to_owned()),
                     Followed::Renamed(name, value) if parts.is_empty() => (name, value),
@@ -111,7 +109,7 @@ impl Migrator<'_> {
     fn new_id(&self, id: &str, draft: Option<&Draft>, drafts: &FileContents) -> String {
         let is_own = draft.is_some_and(|d| d.given_id.is_some() || is_read_from(d, drafts) || d.name != id);
         let new = if is_own { None } else { renamed(self.registry, id) };
-        new.unwrap_or(id).to_owned()
+        new.map_or(id, |now| now.name).to_owned()
     }
 
     /// A whole stage as a value, with its new names.

@@ -2,7 +2,7 @@
 
 use super::Migrated;
 use crate::load::fault::{Fault, LineStarts};
-use crate::load::old_name::renamed;
+use crate::load::old_name::{Now, renamed};
 use crate::load::syntax::tree::{GroupEntry, ValueShape, ValueTree};
 use std::ops::Range;
 use toile_core::{Change, Registry};
@@ -43,20 +43,34 @@ impl Migrator<'_> {
             _ => return,
         };
         let old = self.at(&span).to_owned();
-        let new = renamed(self.registry, &old);
-        if let Some(new) = new {
-            let what = format!("stage {old} -> {new}");
-            self.edits.push(TextEdit { at: span, text: new.to_owned(), what });
-            if let (Some(id), ValueShape::Group { inside, .. }) = (id, &tree.shape) {
-                let comma = if entries.is_empty() { "" } else { ", " };
-                let what = format!("{new}: keeps its id, which others read from");
-                self.edits.push(TextEdit { at: *inside..*inside, text: format!("id: {id:?}{comma}"), what });
-            }
+        let now = renamed(self.registry, &old);
+        if let Some(now) = now {
+            self.renamed(tree, span, &old, now, id);
         }
-        let names = [Some(old.as_str()), new];
+        let names = [Some(old.as_str()), now.map(|now| now.name)];
         for (i, entry) in entries.iter().enumerate() {
             self.argument(names.iter().flatten().copied().collect(), entries, i, entry);
         }
+    }
+
+    /// The new name of a stage, the argument that says what the old one said, and its id.
+    fn renamed(&mut self, tree: &ValueTree, name: Range<usize>, old: &str, now: Now, id: Option<&str>) {
+        let Now { name: new, with } = now;
+        let called = if with.is_empty() { new.to_owned() } else { format!("{new}({with})") };
+        let what = format!("stage {old} -> {called}");
+        let ValueShape::Group { inside, entries, .. } = &tree.shape else {
+            return self.edits.push(TextEdit { at: name, text: called, what });
+        };
+        self.edits.push(TextEdit { at: name, text: new.to_owned(), what });
+        let with = (!with.is_empty()).then(|| with.to_owned());
+        let mut added: Vec<String> = with.into_iter().chain(id.map(|id| format!("id: {id:?}"))).collect();
+        if added.is_empty() {
+            return;
+        }
+        // A comma behind them where others follow.
+        added.extend((!entries.is_empty()).then(String::new));
+        let what = id.map_or_else(String::new, |_| format!("{new}: keeps its id, which others read from"));
+        self.edits.push(TextEdit { at: *inside..*inside, text: added.join(", "), what });
     }
 
     /// What became of a parameter of a stage that has had these names.

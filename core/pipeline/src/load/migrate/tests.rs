@@ -10,6 +10,7 @@ fn registry() -> Registry {
     let mut r = kit::registry();
     r.migrate(Migration::stage("Threshold", "Otsu"));
     r.migrate(Migration::renamed("Threshold", "offset", "bias"));
+    r.migrate(Migration::joined("Darker", "Otsu", "bias: 3.0"));
     r.migrate(Migration::stage("Grid", "Lattice"));
     r.migrate(Migration::stage("Lattice", "GridMesher"));
     r.migrate(Migration::converted("GridMesher", "edge_mm", "edge", |mm| {
@@ -108,6 +109,25 @@ fn a_value_that_cannot_be_converted_and_a_name_given_twice_are_left_to_the_user(
     let faults = migrate(text, "x.ron", &registry()).unwrap_err().faults;
     assert_eq!(faults[0].message, "`offset` is now called `bias`, which is given as well");
     assert_eq!(faults[0].hint.as_deref(), Some("leave one of them away"));
+}
+
+#[test]
+fn a_stage_that_became_a_choice_of_another_says_which() {
+    for (old, new) in [
+        ("[Darker()]", "[Otsu(bias: 3.0)]"),
+        ("[Darker(garment: Dark)]", "[Otsu(bias: 3.0, garment: Dark)]"),
+        ("[Darker(), Canny(from: \"Darker\")]", "[Otsu(bias: 3.0, id: \"Darker\"), Canny(from: \"Darker\")]"),
+        ("[Darker]", "[Otsu(bias: 3.0)]"),
+    ] {
+        let migrated = migrate(&format!("(stages: {old})"), "x.ron", &registry()).unwrap();
+        assert_eq!(migrated.text, format!("(stages: {new})"));
+        assert_eq!(migrated.changes[0], "line 1: stage Darker -> Otsu(bias: 3.0)");
+    }
+    let load =
+        crate::load::load("(stages: [Darker()])", "x.ron", std::path::Path::new("."), &registry(), &[]);
+    let faults = load.unwrap_err().faults;
+    let old = faults.iter().find(|f| f.code == "old_name").unwrap();
+    assert_eq!(old.message, "the stage `Darker` is now `Otsu(bias: 3.0)`");
 }
 
 const QUALITIES: &str = r#"(

@@ -6,7 +6,6 @@ use super::super::tests::check_sound;
 use super::field::{Range, SizeField};
 use super::{GradedMesher, check_count};
 use proptest::prelude::*;
-use std::collections::BTreeMap;
 use toile_core::prelude::*;
 use toile_core::{Context, StageError};
 
@@ -21,7 +20,7 @@ fn set(panels: &[(&str, &Outline)]) -> Set<Outline> {
 fn sewn(pairs: &[(&str, &str)], reversed: bool) -> SewingPlan {
     let of = |text: &str| EdgeRef::try_from(text.to_owned()).unwrap();
     let seam = |(a, b): &(&str, &str)| Seam { a: of(a), b: of(b), kind: SeamKind::Matched, reversed };
-    SewingPlan { seams: pairs.iter().map(seam).collect(), placements: BTreeMap::new() }
+    SewingPlan { seams: pairs.iter().map(seam).collect() }
 }
 
 fn run(mesher: &GradedMesher, outlines: &[(&str, &Outline)], plan: Option<&SewingPlan>) -> Set<Panel> {

@@ -5,13 +5,9 @@
 //! Sleeves have none: flat beside the arm, they sew worse in all garments that were tried.
 
 use super::limb::Limb;
-use super::{legs, tubes};
+use super::{Places, legs, tubes};
 use crate::place::sew::Offsets;
-use std::collections::BTreeMap;
 use toile_core::prelude::*;
-
-/// The vertices of each piece in space.
-pub(super) type Places = BTreeMap<String, Vec<Point3>>;
 
 /// What the moves go by.
 pub(super) struct Moving<'a> {

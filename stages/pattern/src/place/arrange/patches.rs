@@ -5,10 +5,10 @@
 //! then stands a little outside of the point of the other piece that it covers. Cost: linear in
 //! vertices. Limits: a patch on a patch follows the order of the seams.
 
-use super::unknown;
+use super::{Places, unknown};
 use crate::place::sew::Offsets;
 use nalgebra::{Isometry2, Rotation2};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use toile_core::prelude::*;
 
 /// How far outside of its piece a patch starts, metres.
@@ -37,7 +37,7 @@ pub(super) fn without(pattern: &Pattern, patches: &BTreeSet<String>) -> Pattern 
 /// Errors: patches that lie on each other in a ring.
 pub(super) fn lay(
     patches: &BTreeSet<String>,
-    places: &mut BTreeMap<String, Vec<Point3>>,
+    places: &mut Places,
     seams: &[GarmentSeam],
     offsets: &Offsets,
 ) -> Result<Vec<String>, StageError> {

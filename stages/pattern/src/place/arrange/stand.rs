@@ -8,6 +8,7 @@
 //! are. Bent pieces keep every length along their cylinder. Cost: some milliseconds. Limits: the
 //! levels are those of a standing body with landmarks.
 
+use super::Places;
 use super::limb::Limb;
 use super::region::{Decided, Joint, Region, Side, bounds, joints, middle};
 use crate::place::sew::Offsets;
@@ -31,8 +32,6 @@ const STEP: f64 = 0.02;
 const SLOPE: f64 = 0.35;
 /// Feet reach up to this share of the body's height.
 const FEET: f64 = 0.06;
-
-type Places = BTreeMap<String, Vec<Point3>>;
 
 /// What is asked of the body.
 struct Figure {

@@ -1,5 +1,6 @@
 //! Pieces around an arm, bent to cylinders.
 
+use super::Places;
 use super::limb::Limb;
 use crate::place::sew::Offsets;
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,8 +13,6 @@ const WORDS: [&str; 3] = ["sleeve", "cuff", "arm"];
 
 /// Slices along a piece in which its middle is looked for.
 const SLICES: usize = 12;
-
-type Places = BTreeMap<String, Vec<Point3>>;
 
 /// A piece beside the arm, in the arm's coordinates.
 struct Side {

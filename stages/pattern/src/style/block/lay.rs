@@ -15,7 +15,7 @@ use toile_core::prelude::*;
 const SAME: f64 = 1e-4;
 
 /// A fit with the upright outline that it belongs to, and where that lies in its photo.
-pub(super) struct Fitted {
+pub(in crate::style) struct Fitted {
     pub upright: Upright,
     /// The template that is cut.
     pub fit: Fit,
@@ -58,7 +58,7 @@ pub(super) fn pattern(
         let stand = stand::Stand::of(body, hung, top)?;
         let lying = pieces::layer(&fitted.lying, form, making, *layer, false);
         for (flat, lying) in pieces::layer(&fitted.fit, form, making, *layer, true).into_iter().zip(lying) {
-            let pose = Some(stand.pose(&flat, *layer));
+            let pose = Some(stand.pose(flat.origin, flat.turn, *layer));
             pieces.push(Piece { pose, ..flat.piece() });
             photos.insert(flat.name.clone(), fitted.frame.map(|f| Lying::of(f, fitted, &lying)));
             flats.push(flat);

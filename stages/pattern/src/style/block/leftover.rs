@@ -183,10 +183,7 @@ fn axis(fit: &Fit) -> impl Fn(Point2) -> f64 + '_ {
 
 /// The template as a closed line in the frame of the upright outline.
 fn polygon(fit: &Fit) -> Vec<Point2> {
-    let placed = |p: Point2, side: usize| {
-        let x = if side == 0 { p.x } else { -p.x };
-        Rotation2::new(fit.turn) * (Point2::new(x, p.y) + Vector2::new(fit.shift, 0.0))
-    };
-    let points = |side: usize| fit.sides[side].iter().flat_map(|b| b.points()).map(move |p| placed(p, side));
+    let points =
+        |side: usize| fit.sides[side].iter().flat_map(|b| b.points()).map(move |p| fit.laid(p, side));
     points(0).chain(points(1).collect::<Vec<_>>().into_iter().rev()).collect()
 }

@@ -17,7 +17,7 @@ mod refusal;
 mod seams;
 mod stand;
 mod tell;
-mod template;
+pub(super) mod template;
 #[cfg(test)]
 mod tests;
 mod waist;
@@ -25,10 +25,13 @@ mod wearable;
 
 pub use fitting::Fitting;
 use front::Front;
-use lay::{Fitted, mirrored, pattern};
+pub(super) use lay::Fitted;
+use lay::{mirrored, pattern};
 use leftover::Leftover;
 use pieces::Making;
 use rayon::prelude::*;
+pub(super) use refusal::{LAY, no_front};
+pub(super) use stand::Stand;
 use tell::at_95;
 pub use template::alike::Sides;
 pub use template::complete::Complete;
@@ -39,6 +42,7 @@ use template::halves::Upright;
 use template::marks::missing;
 use toile_core::prelude::*;
 pub use waist::Waist;
+pub(super) use wearable::check as check_wearable;
 
 /// The share of the limit for a garment of which nobody has said what it is: a top whose sleeves
 /// lie against it looks a little like a skirt.
@@ -93,11 +97,6 @@ impl BlockStyle {
         (BlockStyle::Onepiece, "Onepiece", &template::form::ONEPIECE),
         (BlockStyle::SleevelessOnepiece, "SleevelessOnepiece", &template::form::ROMPER),
     ];
-
-    /// Whether a kind of garment has this name.
-    pub(super) fn knows(name: &str) -> bool {
-        Self::NAMED.iter().any(|(_, known, _)| *known == name)
-    }
 
     /// As it is written.
     fn name(self) -> &'static str {
@@ -175,7 +174,7 @@ impl Block {
                 form.word
             ));
         }
-        wearable::check(name, form, &before.fit, body, photo("front"))?;
+        check_wearable(name, form, &before.fit, body, photo("front"))?;
         let mirrored = mirrored(front);
         let back = outlines.get("back").unwrap_or(&mirrored);
         let found = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
@@ -191,6 +190,11 @@ impl Block {
 }
 
 impl Block {
+    /// What lays a template over an outline that is cut as it lies.
+    pub(super) fn as_it_lies(style: BlockStyle) -> Self {
+        Block { style, sides: Sides::AsTheyLie, ..Block::default() }
+    }
+
     /// The best of the forms, fitted; to the outline at another scale where the frame cut its
     /// width.
     fn fitted(
@@ -216,7 +220,7 @@ impl Block {
     }
 
     /// The best of the forms, fitted.
-    fn best(
+    pub(super) fn best(
         &self,
         panel: &str,
         outline: &Outline,
@@ -265,7 +269,7 @@ impl Block {
     }
 
     /// Refuses or tells what the template does not explain.
-    fn explains(
+    pub(super) fn explains(
         &self,
         panel: &str,
         (_, form, fitted): &(&str, &Form, Fitted),

@@ -6,9 +6,9 @@ use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
 /// What a photographer can do.
-pub(super) const LAY: &str = "lay the garment flat and smooth, neck or waist up, sleeves and legs away from the body, all of it in the picture";
+pub(in crate::style) const LAY: &str = "lay the garment flat and smooth, neck or waist up, sleeves and legs away from the body, all of it in the picture";
 
-pub(super) fn no_front() -> StageError {
+pub(in crate::style) fn no_front() -> StageError {
     StageError::invalid("there is no photo \"front\" to cut the garment from")
         .hint("call the photo of the garment's front \"front\"")
 }

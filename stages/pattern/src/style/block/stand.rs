@@ -1,7 +1,7 @@
-//! Where the pieces of a block stand around a body: as they lie, front before it and back behind
+//! Where the pieces of a garment stand around a body: as they lie, front before it and back behind
 //! it.
 
-use crate::style::block::template::flat::{Flat, Layer};
+use crate::style::block::template::flat::Layer;
 use nalgebra::Rotation2;
 use toile_core::prelude::*;
 
@@ -14,7 +14,7 @@ const TRUNK: (f64, f64) = (0.3, 0.8);
 
 /// Where a garment's axis stands: the height of its origin, and the planes of its layers.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stand {
+pub(in crate::style) struct Stand {
     height: f64,
     depth: (f64, f64),
 }
@@ -22,7 +22,7 @@ pub(super) struct Stand {
 impl Stand {
     /// `top` is the height of neck or waist in the garment's frame, `landmark` that of the body
     /// which it hangs at.
-    pub(super) fn of(body: &Body, landmark: &str, top: f64) -> Result<Stand, StageError> {
+    pub(in crate::style) fn of(body: &Body, landmark: &str, top: f64) -> Result<Stand, StageError> {
         let at = body.landmarks.get(landmark).ok_or_else(|| {
             StageError::invalid(format!(
                 "the body has no landmark \"{landmark}\", from which the garment hangs"
@@ -39,19 +39,19 @@ impl Stand {
         Ok(Stand { height: at.y + ABOVE - top, depth })
     }
 
-    /// The pose of a piece.
-    pub(super) fn pose(&self, flat: &Flat, layer: Layer) -> Pose {
+    /// The pose of a piece whose origin lies there in the garment's frame, turned by so much.
+    pub(in crate::style) fn pose(&self, at: Point2, turn: f64, layer: Layer) -> Pose {
         // A piece behind the body is seen from behind: its right is the body's left.
         let (sign, z) = match layer {
             Layer::Front => (1.0, self.depth.0),
             Layer::Back => (-1.0, self.depth.1),
         };
         let way = |v: Vector2| {
-            let v = Rotation2::new(flat.turn) * v;
+            let v = Rotation2::new(turn) * v;
             Vector3::new(sign * v.x, v.y, 0.0)
         };
         Pose {
-            origin: Point3::new(sign * flat.origin.x, self.height + flat.origin.y, z),
+            origin: Point3::new(sign * at.x, self.height + at.y, z),
             across: way(Vector2::x()),
             along: way(Vector2::y()),
         }

@@ -30,7 +30,7 @@ struct Girth {
 const ALIKE: f64 = 0.03;
 
 /// Refuses a garment that is much too narrow for the body. `name` is its style's.
-pub(super) fn check(
+pub(in crate::style) fn check(
     name: &str,
     form: &Form,
     fit: &Fit,

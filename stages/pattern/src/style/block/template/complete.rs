@@ -7,7 +7,6 @@
 
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::halves::Upright;
-use nalgebra::Rotation2;
 use toile_core::prelude::*;
 
 /// What of a garment that the frame cuts is added.
@@ -78,11 +77,7 @@ pub(crate) fn mark(
 
 /// How many times as wide the fitted garment is as its outline in the photo.
 pub(crate) fn widened(fit: &Fit, upright: &Upright, outline: &Outline) -> f64 {
-    let turn = Rotation2::new(fit.turn);
-    let place = |p: Point2, side: usize| {
-        let u = if side == 0 { p.x + fit.shift } else { fit.shift - p.x };
-        upright.given(turn * Point2::new(u, p.y)).x
-    };
+    let place = |p: Point2, side: usize| upright.given(fit.laid(p, side)).x;
     let sides = fit.sides.iter().enumerate();
     let template = sides.flat_map(|(side, edges)| {
         edges.iter().flat_map(move |bow| (0..=8).map(move |k| place(bow.at(f64::from(k) / 8.0), side)))

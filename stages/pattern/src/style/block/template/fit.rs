@@ -78,6 +78,12 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
+    /// A place of a side in the frame of the upright outline.
+    pub(crate) fn laid(&self, p: Point2, side: usize) -> Point2 {
+        let u = if side == 0 { p.x + self.shift } else { self.shift - p.x };
+        Rotation2::new(self.turn) * Point2::new(u, p.y)
+    }
+
     /// With what its edges cost: how unusual they are, and how many.
     fn priced(self, unusual: f64, form: &Form) -> Fit {
         Fit { score: self.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64, ..self }

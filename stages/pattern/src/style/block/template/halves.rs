@@ -1,6 +1,6 @@
 //! An outline stood upright, and its two halves.
 
-use crate::style::shape::Shape;
+use crate::style::block::template::axis::Axis;
 use nalgebra::Rotation2;
 use toile_core::artifact::{Outline, Point2};
 
@@ -31,13 +31,14 @@ pub(crate) struct Upright {
 impl Upright {
     /// `None` for an outline without area, or that its axis does not cut.
     pub(crate) fn of(outline: &Outline) -> Option<Upright> {
-        let shape = Shape::new(outline)?;
-        let points: Vec<Point2> = (0..outline.outer.points.len()).map(|i| shape.at(i)).collect();
+        let axis = Axis::of(&outline.outer.points)?;
+        let points: Vec<Point2> = outline.outer.points.iter().map(|p| axis.upright(*p)).collect();
         let mirrored: Vec<Point2> = points.iter().rev().map(|p| Point2::new(-p.x, p.y)).collect();
         let halves = [half(&points)?, half(&mirrored)?];
         let points = joined(&halves);
         let unseen = vec![false; points.len()];
-        Some(Upright { points, halves, size: shape.size, tilt: shape.tilt, centre: shape.centre, unseen })
+        let Axis { size, tilt, centre } = axis;
+        Some(Upright { points, halves, size, tilt, centre, unseen })
     }
 
     /// The same outline about the axis through the middles of most of its rows, which a sleeve that

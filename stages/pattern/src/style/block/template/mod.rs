@@ -1,6 +1,7 @@
 //! A garment's template, fitted to an outline.
 
 pub(crate) mod alike;
+pub(crate) mod axis;
 pub(crate) mod bow;
 pub(crate) mod complete;
 pub(crate) mod curve;
