@@ -240,10 +240,14 @@ fn what_cannot_be_is_refused_by_name() {
         refused("Otsu", "mesher"),
         "error: there is a binariser `Otsu` already; choose another name\n"
     );
-    let needed =
-        |name: &str| format!("error: the crate needs `{name}` for something else; choose another name\n");
-    assert_eq!(refused("Photo", "binariser"), needed("Photo"));
-    assert_eq!(refused("outline", "mesher"), needed("Outline"));
+    assert_eq!(
+        refused("outline", "mesher"),
+        "error: there is a style `Outline` already; choose another name\n"
+    );
+    assert_eq!(
+        refused("Photo", "binariser"),
+        "error: the crate needs `Photo` for something else; choose another name\n"
+    );
     let there = "reader, denoiser, binariser, edge-detector, style, mesher, smoother, body, fabric, placement, collider, \
                  stitcher, draper, flattener, texturer, writer";
     assert_eq!(refused("Fine", "meshr"), "error: there is no role \"meshr\"; did you mean mesher?\n");
