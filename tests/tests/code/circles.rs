@@ -37,7 +37,7 @@ struct Named<'a> {
     handed_on: Vec<((Module, String), Module)>,
 }
 
-fn is_test(attributes: &[syn::Attribute]) -> bool {
+pub(super) fn is_test(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|a| {
         a.path().is_ident("test")
             || a.path().is_ident("cfg") && quoted(a).contains("test") && !quoted(a).contains("not")
@@ -162,7 +162,7 @@ fn module_of(path: &Path) -> Module {
     parts
 }
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(super) fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()) {
         if entry.is_dir() {
             sources(&entry, found);
@@ -250,7 +250,7 @@ fn folder_pairs(src: &Path, edges: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> BTr
     both.map(|(a, b)| [a.clone(), b.clone()]).collect()
 }
 
-fn crates(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(super) fn crates(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).filter(|e| e.is_dir()) {
         let name = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if name == "target" || name.starts_with('.') {

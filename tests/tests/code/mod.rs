@@ -1,4 +1,5 @@
-//! The code itself: what imports what, and whether each parameter acts.
+//! The code itself: what imports what, what types are called, and whether each parameter acts.
 
 mod circles;
 mod every_parameter;
+mod type_names;

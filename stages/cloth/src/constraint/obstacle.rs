@@ -5,8 +5,8 @@
 //! one vertex in one step, exactly. A vertex whose tangential velocity is used up stands still,
 //! without creep.
 
-use crate::energy::Vec3;
 use crate::error::{ClothError, check_parameter};
+use toile_geometry::Vec3;
 
 /// A body given by its distance.
 pub trait Obstacle: Send + Sync {

@@ -9,9 +9,9 @@
 
 use nalgebra::Matrix3x2;
 
-use crate::energy::Vec3;
 use crate::error::{ClothError, check_parameter};
 use crate::mesh::Sheet;
+use toile_geometry::Vec3;
 
 /// The edge-wise correction.
 #[derive(Debug, Clone, Copy, PartialEq)]

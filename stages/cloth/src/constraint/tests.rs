@@ -2,8 +2,8 @@
 use nalgebra::Vector2;
 
 use super::*;
-use crate::energy::Vec3;
 use crate::mesh::Sheet;
+use toile_geometry::Vec3;
 
 #[test]
 fn friction_sticks_below_and_slides_above_the_cone() {

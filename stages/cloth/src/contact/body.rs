@@ -1,12 +1,9 @@
 //! The body: a closed, static triangle mesh that cloth stays outside of.
 
-use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
-use toile_geometry::facets::Facets;
 use toile_geometry::sharp::Sharp;
 use toile_geometry::signed_distance::{Nearest, SignedDistance};
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, facets::Facets};
 
 /// A closed, static triangle mesh whose triangles face outwards.
 #[derive(Debug, Clone)]

@@ -5,14 +5,11 @@
 //! implement [`CollisionSurface`], too.
 
 use super::body::Body;
-use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::sync::Arc;
-use toile_geometry::facets::Facets;
 use toile_geometry::sharp::Sharp;
 use toile_geometry::signed_distance::Nearest;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, facets::Facets};
 
 /// Points per parallel task.
 const CHUNK: usize = 64;

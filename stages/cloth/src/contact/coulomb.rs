@@ -6,9 +6,8 @@
 //! limit at large ones. Its matrix is positive semi-definite. Cost: O(1). Limit: a point that holds
 //! creeps by about the slip tolerance.
 
-use nalgebra::{Matrix3, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
 
 /// Distance at which a sliding point drags its anchor behind it, in slip tolerances. Friction is
 /// then half of its limit, so that a sliding point can stop.

@@ -1,9 +1,7 @@
 //! The friction of one contact of cloth with cloth, kept from step to step.
 
 use crate::contact::coulomb::FrictionMemory;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Friction of one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]

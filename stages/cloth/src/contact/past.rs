@@ -6,9 +6,7 @@
 //! point of the body. Limit: cloth that slides off is found only once it is wholly below.
 
 use super::collision_surface::CollisionSurface;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// The piece of a node without triangles.
 pub const NO_PIECE: u32 = u32::MAX;

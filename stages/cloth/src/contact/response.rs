@@ -10,10 +10,7 @@
 //! [`super::step_limit`]).
 
 use super::step_limit::colliding;
-use nalgebra::Vector3;
-use toile_geometry::pair::Pair;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, pair::Pair};
 
 /// Rounds in which pairs around changed moves respond, too.
 const ROUNDS: usize = 4;

@@ -1,9 +1,7 @@
 //! Moves cloth out of the body at the start. Cost: one distance per vertex.
 
 use super::collision_surface::CollisionSurface;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Greatest depth in the body from which a vertex is moved out, m: deeper ones may belong to
 /// another side.

@@ -8,12 +8,9 @@
 //! fewer in each later round. Limit: pairs that were found for the original moves may miss
 //! collisions of shortened ones: see [`limit_with_search`].
 
-use nalgebra::Vector3;
 use rayon::prelude::*;
-use toile_geometry::ccd::impact;
 use toile_geometry::pair::Pair;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, ccd::impact};
 
 /// Rounds before the whole step is shortened.
 const ROUNDS: usize = 8;

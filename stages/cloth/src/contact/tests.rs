@@ -3,13 +3,11 @@ use super::body::Body;
 use super::step_limit::{limit_step, limit_with_search};
 use crate::mesh::Sheet;
 use crate::scene::generate;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector2;
 use proptest::prelude::*;
-use toile_geometry::ccd::impact;
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::{Kind, Pair};
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, ccd::impact};
 
 fn point() -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(-1.0..1.0f64).prop_map(Vec3::from)

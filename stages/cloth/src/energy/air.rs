@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use super::places::Places;
 use super::potential::{Energy, Projection};
 use crate::error::{ClothError, check_parameter};
-use crate::linear::Vec3;
+use toile_geometry::Vec3;
 
 /// Greatest density of the fluid, that of water, kg/m³.
 const DENSEST: f64 = 2000.0;

@@ -2,7 +2,7 @@
 //! other crates.
 
 use super::potential::{Energy, Projection, matrix_of, write_matrix};
-use crate::linear::Vec3;
+use toile_geometry::Vec3;
 
 /// Largest difference between the gradient and central differences of the value, relative to the
 /// largest entry.

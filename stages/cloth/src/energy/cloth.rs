@@ -3,9 +3,9 @@
 use super::bending::Calibration;
 use crate::energy::StrainLimit;
 use crate::fabric::{Fabric, Rigidity};
-use crate::linear::Vec3;
 use crate::mesh::Sheet;
 use std::cell::OnceCell;
+use toile_geometry::Vec3;
 
 /// A sheet and what it is made of.
 #[derive(Clone)]

@@ -10,10 +10,10 @@ use super::places::{Places, Share};
 use super::potential::{Energy, Projection, Resistance};
 use super::subset::Subset;
 use crate::linear::Pattern;
-use crate::linear::Vec3;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::any::Any;
+use toile_geometry::Vec3;
 
 /// Elements per partial sum.
 const CHUNK: usize = 512;

@@ -1,7 +1,7 @@
 //! A uniform field: E = -sum m g.x. Linear, so its Hessian is zero.
 
 use super::potential::Energy;
-use crate::linear::Vec3;
+use toile_geometry::Vec3;
 
 /// Weight of lumped masses.
 #[derive(Debug, Clone)]

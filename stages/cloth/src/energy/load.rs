@@ -1,7 +1,7 @@
 //! Dead loads: forces that keep size and direction. E = -sum f.x.
 
 use super::potential::Energy;
-use crate::linear::Vec3;
+use toile_geometry::Vec3;
 
 /// A fixed force on every vertex.
 #[derive(Debug, Clone, PartialEq)]

@@ -28,7 +28,6 @@ mod subset;
 #[cfg(test)]
 mod tests;
 
-pub use crate::linear::Vec3;
 pub use air::{Air, AirDrag, AirStep, carried, mobility};
 pub use band::{Band, Bands};
 pub use check::{gradient_error, hessian_error};
@@ -41,3 +40,4 @@ pub use places::Places;
 pub use potential::{Energy, Projection, Resistance, matrix_of, total_gradient, total_value, write_matrix};
 pub use strain_limit::StrainLimit;
 pub use subset::Subset;
+pub use toile_geometry::Vec3;

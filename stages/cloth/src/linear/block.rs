@@ -4,9 +4,8 @@
 //! through the rows in order, so they are the same bits every time.
 
 use crate::linear::{Pattern, add_at};
-use nalgebra::{Matrix3, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
 
 /// The matrix. Block (i, j) with i <= j stands for itself and, transposed, for (j, i).
 #[derive(Debug, Clone)]

@@ -16,5 +16,4 @@ pub use pattern::{Pattern, Slot, add_at};
 pub use pcg::{PcgReport, conjugate_gradients};
 pub(crate) use vectors::leave_vectors;
 
-/// A position, force or direction in space.
-pub type Vec3 = nalgebra::Vector3<f64>;
+pub use toile_geometry::Vec3;

@@ -2,8 +2,8 @@
 use nalgebra::Matrix3;
 
 use super::*;
-use crate::energy::Vec3;
 use crate::stopper::Stopper;
+use toile_geometry::Vec3;
 
 #[test]
 fn a_block_counts_on_both_sides_of_the_diagonal() {

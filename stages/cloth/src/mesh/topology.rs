@@ -52,7 +52,7 @@ const MOST_SHARING: usize = 16;
 
 /// One triangle's side of an edge, before sides are paired.
 #[derive(Clone, Copy)]
-struct Half {
+struct HalfEdge {
     low: u32,
     high: u32,
     forward: bool,
@@ -75,7 +75,7 @@ pub(super) fn edges(
     rest: &[[Vector2<f64>; 3]],
     facing: Facing,
 ) -> Result<(Vec<Edge>, Vec<[u32; 3]>), ClothError> {
-    let mut halves: Vec<Half> = (0..triangles.len())
+    let mut halves: Vec<HalfEdge> = (0..triangles.len())
         .flat_map(|t| (0..3).map(move |corner| (t, corner)))
         .map(|(t, corner)| half(t, corner, &triangles[t], &rest[t]))
         .collect();
@@ -98,11 +98,11 @@ pub(super) fn edges(
 /// sheet belong together: a line inside it to which another is sewn. Of what is left, the first two
 /// are a seam like any other, and each further sheet hangs on it by its border alone, without a
 /// fold.
-fn parts(group: &[Half], rest: &[[Vector2<f64>; 3]], facing: Facing) -> Vec<Vec<Half>> {
+fn parts(group: &[HalfEdge], rest: &[[Vector2<f64>; 3]], facing: Facing) -> Vec<Vec<HalfEdge>> {
     if group.len() <= 2 || facing == Facing::Alike {
         return vec![group.to_vec()];
     }
-    let ends = |h: &Half| {
+    let ends = |h: &HalfEdge| {
         let (corners, k) = (&rest[h.side.triangle as usize], h.side.corner as usize);
         let (a, b) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
         if h.forward { [a, b] } else { [b, a] }
@@ -110,7 +110,7 @@ fn parts(group: &[Half], rest: &[[Vector2<f64>; 3]], facing: Facing) -> Vec<Vec<
     let (mut left, mut parts) = (group.to_vec(), Vec::new());
     let mut k = 0;
     while k < left.len() {
-        let is_other_half = |o: &Half| o.forward != left[k].forward && ends(o) == ends(&left[k]);
+        let is_other_half = |o: &HalfEdge| o.forward != left[k].forward && ends(o) == ends(&left[k]);
         match left[k + 1..].iter().take(MOST_SHARING).position(is_other_half) {
             Some(at) => {
                 let other = left.remove(k + 1 + at);
@@ -125,10 +125,10 @@ fn parts(group: &[Half], rest: &[[Vector2<f64>; 3]], facing: Facing) -> Vec<Vec<
     parts
 }
 
-fn half(t: usize, corner: usize, triangle: &[u32; 3], rest: &[Vector2<f64>; 3]) -> Half {
+fn half(t: usize, corner: usize, triangle: &[u32; 3], rest: &[Vector2<f64>; 3]) -> HalfEdge {
     let (i, j) = ((corner + 1) % 3, (corner + 2) % 3);
     let (a, b) = (triangle[i], triangle[j]);
-    Half {
+    HalfEdge {
         low: a.min(b),
         high: a.max(b),
         forward: a < b,
@@ -138,14 +138,14 @@ fn half(t: usize, corner: usize, triangle: &[u32; 3], rest: &[Vector2<f64>; 3]) 
 }
 
 /// No triangle is listed twice.
-fn none_twice(group: &[Half]) -> Result<(), ClothError> {
-    let twice = |a: &Half, b: &Half| {
+fn none_twice(group: &[HalfEdge]) -> Result<(), ClothError> {
+    let twice = |a: &HalfEdge, b: &HalfEdge| {
         let mut of = [a.low, a.high, a.side.opposite];
         of.sort_unstable();
         let (first, second) = (a.side.triangle as usize, b.side.triangle as usize);
         ClothError::TriangleTwice { first, second, of }
     };
-    let same = |a: &&Half, b: &Half| a.side.opposite == b.side.opposite && a.forward == b.forward;
+    let same = |a: &&HalfEdge, b: &HalfEdge| a.side.opposite == b.side.opposite && a.forward == b.forward;
     for (k, a) in group.iter().enumerate().take(MOST_SHARING) {
         if let Some(b) = group[k + 1..].iter().find(|b| same(&a, b)) {
             return Err(twice(a, b));
@@ -154,7 +154,7 @@ fn none_twice(group: &[Half]) -> Result<(), ClothError> {
     Ok(())
 }
 
-fn pair(group: &[Half], facing: Facing) -> Result<Edge, ClothError> {
+fn pair(group: &[HalfEdge], facing: Facing) -> Result<Edge, ClothError> {
     let bad = |why| ClothError::NonManifoldEdge { a: group[0].low as usize, b: group[0].high as usize, why };
     let first = group[0];
     let vertices = if first.forward { [first.low, first.high] } else { [first.high, first.low] };

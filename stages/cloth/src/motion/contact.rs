@@ -3,12 +3,9 @@
 
 use crate::contact::step_limit::limit_with_search;
 use crate::statics::drive::solve::Collider;
-use nalgebra::Vector3;
-use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::Pair;
 use toile_geometry::signed_distance::Nearest;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// Share of the overlap of two layers that one step removes.
 const RELEASE: f64 = 0.2;

@@ -1,10 +1,10 @@
 //! The time-stepping solvers, made for one sheet.
 
-use crate::energy::Vec3;
 use crate::error::ClothError;
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, Xpbd};
+use toile_geometry::Vec3;
 
 /// First explicit step, as a share of the stability limit: cloth stiffens.
 const STABLE: f64 = 0.8;

@@ -31,11 +31,9 @@ use crate::statics::report::start::{check, probably_reversed};
 use crate::stopper::Stopper;
 use fall::Falls;
 use moving::Moving;
-use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// When a motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -227,7 +225,7 @@ impl Motion {
         let falls = Falls::of(scene, collider, &pieces);
         let (clock, budget, asked) = (Instant::now(), self.budget, stopper.clone());
         let stopper = Stopper::when(move || asked.is_up() || clock.elapsed() > budget);
-        let mut run = Run { settings: self, scene, collider, pieces, falls, clock, stopper, progress };
+        let mut run = MotionRun { settings: self, scene, collider, pieces, falls, clock, stopper, progress };
         let open = Moving::open(&run, start)?;
         match self.until {
             Until::Sewn { longest } => {
@@ -250,7 +248,7 @@ fn one_fabric(scene: &Scene) -> Result<(), MotionError> {
 }
 
 /// A running motion.
-struct Run<'a> {
+struct MotionRun<'a> {
     settings: &'a Motion,
     scene: &'a Scene,
     collider: Option<Collider<'a>>,
@@ -262,7 +260,7 @@ struct Run<'a> {
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
 }
 
-impl Run<'_> {
+impl MotionRun<'_> {
     fn phases(&mut self, moving: Moving, longest: f64) -> Result<Moved, MotionError> {
         let mut moving = self.sew(moving, longest)?;
         moving.set_damping(self.settings.drag, 1.0);

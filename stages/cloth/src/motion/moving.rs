@@ -4,7 +4,7 @@
 use super::contact::{Answer, limit_step, nearest_on_body, respond_to_body, respond_to_self_contact};
 use super::near::Near;
 use super::seams::Seams;
-use super::{Motion, MotionError, Progress, Run, Vec3};
+use super::{Motion, MotionError, MotionRun, Progress, Vec3};
 use crate::constraint::Provot;
 use crate::energy::{Air, AirDrag, Cloth};
 use crate::error::ClothError;
@@ -64,7 +64,7 @@ pub(super) struct Moving {
 
 impl Moving {
     /// The open panels, before sewing.
-    pub(super) fn open(run: &Run<'_>, start: Vec<Vec3>) -> Result<Self, MotionError> {
+    pub(super) fn open(run: &MotionRun<'_>, start: Vec<Vec3>) -> Result<Self, MotionError> {
         let sheet = run.pieces.open_sheet(&cloths(run.scene))?;
         let pairs = run.pieces.seam_pairs();
         let fixed: Vec<bool> = run.pieces.pinned.clone();
@@ -83,7 +83,7 @@ impl Moving {
     }
 
     /// Joins each pair to one vertex at the common position, with the common momentum.
-    pub(super) fn join(self, run: &Run<'_>) -> Result<Self, MotionError> {
+    pub(super) fn join(self, run: &MotionRun<'_>) -> Result<Self, MotionError> {
         let sheet = run.pieces.sewn_sheet(&cloths(run.scene))?;
         let mut fixed = vec![false; run.pieces.points];
         for (v, &p) in run.pieces.pinned.iter().enumerate() {
@@ -104,7 +104,7 @@ impl Moving {
         Ok(moving)
     }
 
-    fn new(run: &Run<'_>, sheet: Sheet, fixed: &[bool], state: State) -> Result<Self, MotionError> {
+    fn new(run: &MotionRun<'_>, sheet: Sheet, fixed: &[bool], state: State) -> Result<Self, MotionError> {
         let settings = run.settings;
         let (fabrics, first) = (cloths(run.scene), [run.scene.fabric_of(0)]);
         let mut model = Model::of(&sheet).pinned(|v| fixed[v]);
@@ -371,7 +371,7 @@ impl Moving {
 }
 
 /// The friction of cloth on cloth at each node: that of the fabric of one of its triangles.
-fn node_friction(run: &Run<'_>, sheet: &Sheet, fabrics: &[&Fabric]) -> Vec<f64> {
+fn node_friction(run: &MotionRun<'_>, sheet: &Sheet, fabrics: &[&Fabric]) -> Vec<f64> {
     let mut friction = vec![0.0; sheet.vertex_count()];
     for (t, corners) in sheet.triangles().iter().enumerate() {
         corners.iter().for_each(|&v| friction[v as usize] = fabrics[run.pieces.cloth(t)].friction);

@@ -2,9 +2,7 @@
 
 use crate::scene::Scene;
 use crate::statics::levels::pieces::Pieces;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Pairs of vertices that close.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -23,10 +23,10 @@ pub fn cloth() -> Fabric {
 }
 
 /// A flat patch: rest coordinates in the unit square and triangles.
-type Patch = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
+type FlatPatch = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
 
 /// `nx` by `ny` cells of the unit square, their diagonals alternating.
-fn patch(nx: u32, ny: u32) -> Patch {
+fn patch(nx: u32, ny: u32) -> FlatPatch {
     let at = |i: u32, j: u32| j * (nx + 1) + i;
     let points = (0..=ny)
         .flat_map(|j| {

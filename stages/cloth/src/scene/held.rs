@@ -6,9 +6,7 @@
 use super::{Scene, SceneError};
 use crate::contact::coulomb::FrictionMemory;
 use crate::contact::friction::FrictionContact;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// How many numbers a contact has besides its nodes.
 pub const FIGURES: usize = 15;

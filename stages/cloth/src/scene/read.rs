@@ -33,7 +33,7 @@ pub struct Loaded {
 }
 
 #[derive(Deserialize)]
-struct Head {
+struct SceneHead {
     format: String,
 }
 
@@ -88,7 +88,7 @@ pub fn check_form(text: &[u8], load: &Load<'_>) -> Result<(), SceneError> {
 fn fields(text: &[u8]) -> Result<RawScene, SceneError> {
     let text = obj::decode(text);
     let form = |e: serde_json::Error| SceneError::Form { why: e.to_string() };
-    let head: Head = serde_json::from_slice(&text).map_err(form)?;
+    let head: SceneHead = serde_json::from_slice(&text).map_err(form)?;
     if head.format != "garment-scene-1" {
         return Err(SceneError::Format { found: head.format });
     }

@@ -7,9 +7,9 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 use super::Model;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::linear::Vec3;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
+use toile_geometry::Vec3;
 
 /// Rounds of moving irregular points to the middle of their surroundings.
 const SMOOTHING: usize = 40;
@@ -138,9 +138,9 @@ pub fn disc(radius: f64, rings: usize) -> (Vec<Vector2<f64>>, Vec<[u32; 3]>) {
     (uv, triangles)
 }
 
-type Mesh = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
+type FlatMesh = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
 
-fn grid(size: Vector2<f64>, nx: usize, ny: usize, rising: impl Fn(usize, usize) -> bool) -> Mesh {
+fn grid(size: Vector2<f64>, nx: usize, ny: usize, rising: impl Fn(usize, usize) -> bool) -> FlatMesh {
     let at = |i: usize, j: usize| Vector2::new(size.x * i as f64 / nx as f64, size.y * j as f64 / ny as f64);
     let uv = (0..=ny).flat_map(|j| (0..=nx).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
     let mut triangles = Vec::with_capacity(2 * nx * ny);
@@ -152,7 +152,7 @@ fn grid(size: Vector2<f64>, nx: usize, ny: usize, rising: impl Fn(usize, usize) 
     (uv, triangles)
 }
 
-fn equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> Mesh {
+fn equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> FlatMesh {
     let (nx, rows) = nearly_equilateral(size, nx, ny);
     let step = size.x / nx as f64;
     let mut uv = Vec::new();
@@ -183,7 +183,7 @@ fn nearly_equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> (usize, usize
     near.map(misfit).min_by(|a, b| a.0.total_cmp(&b.0)).map_or((nominal, 2 * ny), |m| (m.1, m.2))
 }
 
-fn irregular(size: Vector2<f64>, nx: usize, ny: usize, seed: u64) -> Mesh {
+fn irregular(size: Vector2<f64>, nx: usize, ny: usize, seed: u64) -> FlatMesh {
     let mut uv: Vec<Vector2<f64>> = Vec::new();
     for i in 0..nx {
         let t = size.x * i as f64 / nx as f64;

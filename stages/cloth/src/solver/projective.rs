@@ -20,7 +20,7 @@ use crate::fabric::Rigidity;
 use crate::linear::{BlockMatrix, Cholesky};
 use crate::mesh::Sheet;
 
-struct Triangle {
+struct ProjectedTriangle {
     vertices: [usize; 3],
     shape: [Vector2<f64>; 3],
     stiffness: f64,
@@ -30,7 +30,7 @@ struct Triangle {
 pub struct Projective {
     dt: f64,
     iterations: usize,
-    triangles: Vec<Triangle>,
+    triangles: Vec<ProjectedTriangle>,
     matrix: BlockMatrix,
     factor: Cholesky,
     fixed: Vec<bool>,
@@ -55,7 +55,8 @@ impl Projective {
     ) -> Result<Self, ClothError> {
         check_parameter("dt", dt, |dt| dt > 0.0, "above 0 s")?;
         check_parameter("stiffness", k, |k| k >= 0.0, "0 or more N/m")?;
-        let triangles: Vec<Triangle> = (0..sheet.triangles().len()).map(|t| triangle(sheet, t, k)).collect();
+        let triangles: Vec<ProjectedTriangle> =
+            (0..sheet.triangles().len()).map(|t| triangle(sheet, t, k)).collect();
         let hinges = folds_of(sheet, rigidity)?;
         let mut full = BlockMatrix::with_couplings(sheet.vertex_count(), |visit| {
             sheet.triangles().iter().for_each(|t| visit(t));
@@ -129,14 +130,14 @@ impl Projective {
     }
 }
 
-fn triangle(sheet: &Sheet, t: usize, k: f64) -> Triangle {
+fn triangle(sheet: &Sheet, t: usize, k: f64) -> ProjectedTriangle {
     let m = sheet.inverse_rest()[t];
     let (g1, g2) = (m.row(0).transpose(), m.row(1).transpose());
     let vertices = sheet.triangles()[t].map(|v| v as usize);
-    Triangle { vertices, shape: [-g1 - g2, g1, g2], stiffness: k * sheet.areas()[t] }
+    ProjectedTriangle { vertices, shape: [-g1 - g2, g1, g2], stiffness: k * sheet.areas()[t] }
 }
 
-impl Triangle {
+impl ProjectedTriangle {
     fn pull(&self, x: &[Vec3]) -> [Vec3; 3] {
         let mut f = Matrix3x2::zeros();
         for (g, &v) in self.shape.iter().zip(&self.vertices) {

@@ -67,7 +67,7 @@ impl Xpbd {
     }
 
     /// One sweep over all constraints.
-    fn project<W: Answer>(&self, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
+    fn project<W: Mobility>(&self, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
         for s in &self.strains {
             s.project(&self.compliance, x, inverse_mass, h);
         }
@@ -115,14 +115,14 @@ impl Xpbd {
 }
 
 /// The change of velocity of a vertex per impulse, 1/kg: by its mass alone, or with drag.
-trait Answer: Copy {
+trait Mobility: Copy {
     /// `a W b`.
     fn between(self, a: &Vec3, b: &Vec3) -> f64;
     /// `W a by`.
     fn to(self, a: &Vec3, by: f64) -> Vec3;
 }
 
-impl Answer for f64 {
+impl Mobility for f64 {
     fn between(self, a: &Vec3, b: &Vec3) -> f64 {
         self * a.dot(b)
     }
@@ -132,7 +132,7 @@ impl Answer for f64 {
     }
 }
 
-impl Answer for Matrix3<f64> {
+impl Mobility for Matrix3<f64> {
     fn between(self, a: &Vec3, b: &Vec3) -> f64 {
         a.dot(&(self * b))
     }
@@ -157,7 +157,7 @@ fn mobilities(model: &Model, drag_tensors: &[Matrix3<f64>], h: f64) -> Vec<Matri
 }
 
 impl StrainTerm {
-    fn project<W: Answer>(&self, compliance: &Matrix3<f64>, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
+    fn project<W: Mobility>(&self, compliance: &Matrix3<f64>, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
         let vertices = self.vertices.map(|v| v as usize);
         let shape = [-self.shape[0] - self.shape[1], self.shape[0], self.shape[1]];
         let p = vertices.map(|v| x[v]);
@@ -180,7 +180,7 @@ impl StrainTerm {
     }
 }
 
-fn project_hinge<W: Answer>(hinge: &Fold, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
+fn project_hinge<W: Mobility>(hinge: &Fold, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
     if hinge.stiffness <= 0.0 {
         return;
     }

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use toile_cloth::scene::Scene;
 use toile_cloth::statics::drive::solve::{Collider as EngineCollider, StaticEquilibrium as Solver};
-use toile_cloth::statics::drive::trial::Trial;
+use toile_cloth::statics::drive::trial::StartTrial;
 use toile_cloth::stopper::Stopper;
 use toile_core::prelude::*;
 
@@ -36,13 +36,13 @@ pub(super) fn at_the_best(
     }
     let positions =
         |start: &GarmentStart| -> Vec<Vector3<f64>> { start.positions.iter().map(|p| p.coords).collect() };
-    let others: Vec<Option<Trial>> = garment
+    let others: Vec<Option<StartTrial>> = garment
         .starts
         .par_iter()
         .map(|start| tried(&Scene { positions: positions(start), ..scene.clone() }))
         .collect();
     cx.check()?;
-    let all: Vec<(&str, Option<Trial>)> = std::iter::once((PLACED, first))
+    let all: Vec<(&str, Option<StartTrial>)> = std::iter::once((PLACED, first))
         .chain(garment.starts.iter().map(|s| s.told.as_str()).zip(others))
         .collect();
     let best = best(&all);
@@ -54,16 +54,16 @@ pub(super) fn at_the_best(
 }
 
 /// The number of the best trial; the first of those that are alike.
-fn best(all: &[(&str, Option<Trial>)]) -> usize {
-    let better = |a: Option<Trial>, b: Option<Trial>| match (a, b) {
+fn best(all: &[(&str, Option<StartTrial>)]) -> usize {
+    let better = |a: Option<StartTrial>, b: Option<StartTrial>| match (a, b) {
         (Some(a), Some(b)) => a.is_better(&b),
         (one, other) => one.is_some() && other.is_none(),
     };
     (1..all.len()).fold(0, |best, k| if better(all[k].1, all[best].1) { k } else { best })
 }
 
-fn told(all: &[(&str, Option<Trial>)], best: usize) -> String {
-    let one = |(k, (name, trial)): (usize, &(&str, Option<Trial>))| {
+fn told(all: &[(&str, Option<StartTrial>)], best: usize) -> String {
+    let one = |(k, (name, trial)): (usize, &(&str, Option<StartTrial>))| {
         let result = match trial {
             None => "it cannot be sewn".to_owned(),
             Some(t) if t.gap > 0.0 => format!("a seam stays {:.0} mm open", t.gap * 1e3),
@@ -83,13 +83,13 @@ fn told(all: &[(&str, Option<Trial>)], best: usize) -> String {
 mod tests {
     use super::*;
 
-    fn trial(gap: f64, crossings: usize) -> Option<Trial> {
-        Some(Trial { gap, crossings, pierced: 0 })
+    fn trial(gap: f64, crossings: usize) -> Option<StartTrial> {
+        Some(StartTrial { gap, crossings, pierced: 0 })
     }
 
     #[test]
     fn the_start_whose_seams_close_and_where_nothing_crosses_is_taken() {
-        let best_of = |all: &[Option<Trial>]| best(&all.iter().map(|t| ("", *t)).collect::<Vec<_>>());
+        let best_of = |all: &[Option<StartTrial>]| best(&all.iter().map(|t| ("", *t)).collect::<Vec<_>>());
         assert_eq!(best_of(&[trial(0.072, 0), trial(0.0, 4)]), 1);
         assert_eq!(best_of(&[trial(0.0, 4), trial(0.0, 0)]), 1);
         assert_eq!(best_of(&[trial(0.0, 4), trial(0.0, 2)]), 0, "how much crosses is chance");

@@ -8,7 +8,7 @@ use super::outline::{Correspondence, MeasuredOutline, RigidMotion};
 use nalgebra::{Point2, Vector2};
 
 /// Where a vertex should lie, and whether it must lie there.
-pub(super) type Target = (Point2<f64>, bool);
+pub(super) type LaidTarget = (Point2<f64>, bool);
 
 /// The outlines of a pair, laid over each other.
 pub(super) struct LaidPair {
@@ -74,15 +74,15 @@ impl LaidPair {
     /// For each vertex of an outline, in its own plane and order, where it should lie, and whether
     /// it must lie there: corners and seam ends, and what stands for those of the other. The first
     /// is drawn to the mean of both, the second onto the first.
-    pub(super) fn targets(&self, side: PairSide, pull: Pull) -> Vec<Target> {
+    pub(super) fn targets(&self, side: PairSide, pull: Pull) -> Vec<LaidTarget> {
         let targets = self.on_other(side, pull);
         match side {
             PairSide::First => {
-                let mean = |(t, p): (&Target, &Point2<f64>)| (nalgebra::center(&t.0, p), t.1);
+                let mean = |(t, p): (&LaidTarget, &Point2<f64>)| (nalgebra::center(&t.0, p), t.1);
                 targets.iter().zip(self.a.places()).map(mean).collect()
             }
             PairSide::Second => {
-                let own_plane = |&(p, end): &Target| {
+                let own_plane = |&(p, end): &LaidTarget| {
                     let p = self.motion.undone(&p);
                     (Point2::new(-p.x, p.y), end)
                 };
@@ -92,10 +92,10 @@ impl LaidPair {
     }
 
     /// The same on the line of the other outline, in the common plane.
-    fn on_other(&self, side: PairSide, pull: Pull) -> Vec<Target> {
+    fn on_other(&self, side: PairSide, pull: Pull) -> Vec<LaidTarget> {
         let [own, other] = self.own_and_other(side);
         let count = own.places().len();
-        let mut targets: Vec<Target> = match pull {
+        let mut targets: Vec<LaidTarget> = match pull {
             Pull::Slide => (0..count).map(|k| (other.at(self.across(side, own.arc(k))), false)).collect(),
             Pull::Hold | Pull::Fit => own.places().iter().map(|p| (other.nearest(p), false)).collect(),
         };

@@ -150,7 +150,7 @@ fn in_triangles(triangles: &[[u32; 3]], vertices: usize) -> Vec<bool> {
 }
 
 /// The band between grid and outline, with its own vertex numbers.
-struct Band {
+struct GridBand {
     mesh: TriMesh,
     /// The panel's vertex of each of the band's first vertices.
     global: Vec<u32>,
@@ -162,7 +162,7 @@ fn band_mesh(
     gridded: &[bool],
     border: &[[u32; 2]],
     first: u32,
-) -> Result<Band, StageError> {
+) -> Result<GridBand, StageError> {
     let mut on_border = vec![false; points.len()];
     border.iter().flatten().for_each(|&v| on_border[v as usize] = true);
     let in_band = |v: &u32| *v < first || on_border[*v as usize] || !gridded[*v as usize];
@@ -174,10 +174,10 @@ fn band_mesh(
     let to_local = |s: &[u32; 2]| s.map(|v| local[v as usize]);
     let loops: Vec<[u32; 2]> = division.loop_segments().iter().chain(border).map(to_local).collect();
     let lines: Vec<[u32; 2]> = division.chain_segments().iter().map(to_local).collect();
-    Ok(Band { mesh: triangulate(band_points, free, &loops, &lines)?, global })
+    Ok(GridBand { mesh: triangulate(band_points, free, &loops, &lines)?, global })
 }
 
-impl Band {
+impl GridBand {
     /// Adds the band's vertices and triangles to those of the grid.
     fn merge_into(&mut self, points: &mut Vec<Point2>, triangles: &mut Vec<[u32; 3]>) {
         for (k, p) in self.mesh.points.iter().enumerate() {

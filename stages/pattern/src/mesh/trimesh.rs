@@ -37,7 +37,7 @@ pub(crate) struct TriMesh {
 }
 
 /// A side of a cavity: its ends, the triangle outside and whether it is a wall.
-type Side = (u32, u32, u32, bool);
+type CavitySide = (u32, u32, u32, bool);
 
 impl TriMesh {
     /// From counter-clockwise triangles; `walls` are sides that must stay.
@@ -179,7 +179,7 @@ impl TriMesh {
 
     /// The triangles whose circles hold `p`, reached from `t` without crossing a wall, and the
     /// cavity's sides counter-clockwise seen from `p`.
-    fn cavity(&self, t: u32, p: Point2) -> (Vec<u32>, Vec<Side>) {
+    fn cavity(&self, t: u32, p: Point2) -> (Vec<u32>, Vec<CavitySide>) {
         let (mut inside, mut sides) = (vec![t], Vec::new());
         let mut k = 0;
         while k < inside.len() {

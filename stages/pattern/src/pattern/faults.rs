@@ -7,7 +7,7 @@ const MOST: usize = 12;
 
 /// What is wrong in one place, and what may be done.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Fault {
+pub(super) struct PatternFault {
     pub code: ErrorCode,
     /// The parameter that names what is at fault.
     pub param: &'static str,
@@ -17,13 +17,13 @@ pub(super) struct Fault {
 
 /// The faults of a file, at least one, as an error: each in a line of its own where there are
 /// several.
-pub(super) fn refused(file: &str, faults: Vec<Fault>) -> StageError {
+pub(super) fn refused(file: &str, faults: Vec<PatternFault>) -> StageError {
     let Some(first) = faults.first() else {
         return StageError::internal("a file without faults was refused");
     };
     let (code, param, n) = (first.code, first.param, faults.len());
     let error = |message: String| StageError::new(code, message).at(param);
-    if let [Fault { what, remedy, .. }] = &faults[..] {
+    if let [PatternFault { what, remedy, .. }] = &faults[..] {
         let error = error(format!("\"{file}\": {what}"));
         return remedy.iter().fold(error, |error, hint| error.hint(hint));
     }
@@ -40,9 +40,9 @@ pub(super) fn refused(file: &str, faults: Vec<Fault>) -> StageError {
 mod tests {
     use super::*;
 
-    fn fault(what: &str, remedy: &str) -> Fault {
+    fn fault(what: &str, remedy: &str) -> PatternFault {
         let remedy = Some(remedy.to_owned());
-        Fault { code: ErrorCode::PatternLoading, param: "file", what: what.into(), remedy }
+        PatternFault { code: ErrorCode::PatternLoading, param: "file", what: what.into(), remedy }
     }
 
     #[test]

@@ -8,7 +8,7 @@
 //! that are sewn one is run through backwards. Cost: two to the power of a side's edges, of up to
 //! [`TRIED`]. Limits: a place in the middle of an edge is none.
 
-use super::faults::Fault;
+use super::faults::PatternFault;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
@@ -25,17 +25,17 @@ const TRIED: usize = 8;
 type End<'a> = (&'a str, &'a str, bool);
 
 /// Ends of edges as places that seams join.
-struct Places<'a> {
+struct JoinedEnds<'a> {
     pieces: &'a [Piece],
     /// For each end the number of its place.
     of: BTreeMap<End<'a>, usize>,
-    /// Places that are one, each with another of its own or itself.
+    /// JoinedEnds that are one, each with another of its own or itself.
     joined: Vec<usize>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> JoinedEnds<'a> {
     fn of(pieces: &'a [Piece], seams: &'a [PatternSeam]) -> Self {
-        let mut places = Places { pieces, of: BTreeMap::new(), joined: Vec::new() };
+        let mut places = JoinedEnds { pieces, of: BTreeMap::new(), joined: Vec::new() };
         for p in pieces {
             let n = p.outer.edges.len();
             let first = places.joined.len();
@@ -163,8 +163,8 @@ fn written(u: &EdgeUse) -> String {
 }
 
 /// The sides of seams whose edges do not follow each other.
-pub(super) fn broken(pieces: &[Piece], seams: &[PatternSeam]) -> Vec<Fault> {
-    let places = Places::of(pieces, seams);
+pub(super) fn broken(pieces: &[Piece], seams: &[PatternSeam]) -> Vec<PatternFault> {
+    let places = JoinedEnds::of(pieces, seams);
     let mut out = Vec::new();
     for seam in seams {
         for side in &seam.sides {
@@ -187,7 +187,12 @@ pub(super) fn broken(pieces: &[Piece], seams: &[PatternSeam]) -> Vec<Fault> {
                 written(&w[1]),
                 written(&w[0])
             );
-            out.push(Fault { code: ErrorCode::PatternLoading, param: "seams", what, remedy: Some(remedy) });
+            out.push(PatternFault {
+                code: ErrorCode::PatternLoading,
+                param: "seams",
+                what,
+                remedy: Some(remedy),
+            });
         }
     }
     out
@@ -195,7 +200,7 @@ pub(super) fn broken(pieces: &[Piece], seams: &[PatternSeam]) -> Vec<Fault> {
 
 /// A sentence of each seam whose two sides run around their pieces in the same way.
 pub(super) fn inside_out(pieces: &[Piece], seams: &[PatternSeam]) -> Vec<String> {
-    let places = Places::of(pieces, seams);
+    let places = JoinedEnds::of(pieces, seams);
     let mut out = Vec::new();
     for seam in seams {
         let joins = matches!(seam.kind, SeamKind::Matched | SeamKind::Gathered);

@@ -13,7 +13,7 @@
 //! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to
 //! its start. All sides of a seam run the same way: their starts meet, and their ends.
 
-use super::faults::Fault;
+use super::faults::PatternFault;
 use serde::Deserialize;
 use std::fmt::Write;
 use toile_core::nearest;
@@ -38,13 +38,13 @@ struct Entry {
     #[serde(default)]
     name: String,
     #[serde(default)]
-    kind: Kind,
+    kind: WrittenSeamKind,
     sides: Vec<Vec<String>>,
 }
 
 /// A kind of seam as the file writes it.
 #[derive(Deserialize, Default)]
-enum Kind {
+enum WrittenSeamKind {
     #[default]
     Matched,
     Gathered,
@@ -61,17 +61,19 @@ enum Kind {
     },
 }
 
-impl Kind {
+impl WrittenSeamKind {
     fn seam(&self) -> SeamKind {
         match self {
-            Kind::Matched => SeamKind::Matched,
-            Kind::Gathered => SeamKind::Gathered,
-            Kind::Dart => SeamKind::Dart,
-            Kind::KnifePleat => SeamKind::Pleat(PleatFold::Knife),
-            Kind::BoxPleat => SeamKind::Pleat(PleatFold::Box),
-            Kind::Elastic { ratio, stiffness } => SeamKind::Elastic { ratio: *ratio, stiffness: *stiffness },
-            Kind::Patch => SeamKind::Patch,
-            Kind::Folded { angle } => SeamKind::Folded { angle: angle.to_radians() },
+            WrittenSeamKind::Matched => SeamKind::Matched,
+            WrittenSeamKind::Gathered => SeamKind::Gathered,
+            WrittenSeamKind::Dart => SeamKind::Dart,
+            WrittenSeamKind::KnifePleat => SeamKind::Pleat(PleatFold::Knife),
+            WrittenSeamKind::BoxPleat => SeamKind::Pleat(PleatFold::Box),
+            WrittenSeamKind::Elastic { ratio, stiffness } => {
+                SeamKind::Elastic { ratio: *ratio, stiffness: *stiffness }
+            }
+            WrittenSeamKind::Patch => SeamKind::Patch,
+            WrittenSeamKind::Folded { angle } => SeamKind::Folded { angle: angle.to_radians() },
         }
     }
 }
@@ -80,8 +82,8 @@ impl Kind {
 ///
 /// Errors: text that is no such RON, with line and column; every edge that there is none of, with
 /// the number of its seam.
-pub(super) fn read(bytes: &[u8], pieces: &[Piece]) -> Result<Vec<PatternSeam>, Vec<Fault>> {
-    let fault = |what: String, remedy: Option<String>| Fault {
+pub(super) fn read(bytes: &[u8], pieces: &[Piece]) -> Result<Vec<PatternSeam>, Vec<PatternFault>> {
+    let fault = |what: String, remedy: Option<String>| PatternFault {
         code: ErrorCode::PatternLoading,
         param: "seams",
         what,

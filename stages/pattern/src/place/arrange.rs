@@ -34,10 +34,10 @@ use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
 /// The vertices of each piece in space.
-type Places = BTreeMap<String, Vec<Point3>>;
+type PiecePlaces = BTreeMap<String, Vec<Point3>>;
 
-/// Places of every piece, and the sleeves among those that had none, each with the hand of its arm.
-type Stood = (Places, Option<Vec<(String, f64)>>);
+/// PiecePlaces of every piece, and the sleeves among those that had none, each with the hand of its arm.
+type Stood = (PiecePlaces, Option<Vec<(String, f64)>>);
 
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
 const BELOW: f64 = 0.1;
@@ -117,7 +117,7 @@ impl Arrange {
         let boards =
             Flat { pattern: &worn, sleeves: names(sleeves.as_deref()), seams: &seams, offsets: &flat };
         boards.raise(&mut places, body, cx);
-        let finished = |mut places: Places| -> Result<(Vec<Point3>, Vec<String>), StageError> {
+        let finished = |mut places: PiecePlaces| -> Result<(Vec<Point3>, Vec<String>), StageError> {
             for (name, of) in &folded {
                 if let Some(places) = places.get_mut(name) {
                     of.deepen(places);
@@ -152,7 +152,7 @@ impl Arrange {
         Ok(Garment { starts, ..whole(&offsets, seams, fabric, points) })
     }
 
-    /// Places the pieces of a pattern that has no poses; every decision is told. What is still to
+    /// PiecePlaces the pieces of a pattern that has no poses; every decision is told. What is still to
     /// be bent around an arm is named with its hand.
     fn stood(
         &self,
@@ -172,7 +172,7 @@ impl Arrange {
     }
 
     /// Raises poses that were made around a body's middle.
-    fn raise(&self, places: &mut Places, body: &Body, cx: &Context) {
+    fn raise(&self, places: &mut PiecePlaces, body: &Body, cx: &Context) {
         let heights = || places.values().flatten().map(|p| p.y);
         let (lowest, highest) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
         let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
@@ -204,12 +204,12 @@ struct Flat<'a> {
 }
 
 impl Flat<'_> {
-    fn boards<'p>(&'p self, places: &'p Places) -> Vec<Board<'p>> {
+    fn boards<'p>(&'p self, places: &'p PiecePlaces) -> Vec<Board<'p>> {
         boards::boards(self.pattern, &self.sleeves, places, self.offsets)
     }
 
     /// Raises a garment whose shoulder seams would start in the shoulders.
-    fn raise(&self, places: &mut Places, body: &Body, cx: &Context) {
+    fn raise(&self, places: &mut PiecePlaces, body: &Body, cx: &Context) {
         let by = boards::raise(&self.boards(places), self.seams, body);
         if by > 0.0 {
             places.values_mut().flatten().for_each(|p| p.y += by);
@@ -218,13 +218,13 @@ impl Flat<'_> {
     }
 
     /// A sentence for each seam that the body stands between.
-    fn in_the_way(&self, places: &Places, body: &Body) -> Vec<String> {
+    fn in_the_way(&self, places: &PiecePlaces, body: &Body) -> Vec<String> {
         boards::in_the_way(&self.boards(places), self.seams, body)
     }
 }
 
 /// The pieces stand where the body is.
-fn at_the_body(places: &Places, body: &Body) -> Result<(), StageError> {
+fn at_the_body(places: &PiecePlaces, body: &Body) -> Result<(), StageError> {
     let span = |all: &mut dyn Iterator<Item = f64>| {
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
     };
@@ -265,7 +265,7 @@ fn at_the_body(places: &Places, body: &Body) -> Result<(), StageError> {
 }
 
 /// The vertices of every panel where its piece's pose puts them, in the order of the offsets.
-fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<Places, StageError> {
+fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<PiecePlaces, StageError> {
     let place = |(name, (_, panel)): (&&str, &(usize, &Panel))| {
         let piece = pattern.piece(name).ok_or_else(|| unknown(name))?;
         let pose = piece.pose.ok_or_else(|| {

@@ -12,7 +12,7 @@ mod seams;
 #[cfg(test)]
 mod tests;
 
-use cut::Cut;
+use cut::GarmentCut;
 use edges::Edges;
 use toile_core::cost::{Quantity, Size};
 use toile_core::prelude::*;
@@ -52,7 +52,7 @@ impl Subdivide {
             return Ok(garment.clone());
         }
         let edges = Edges::of(garment, cx)?;
-        let cut = Cut::new(garment, &edges, self.parts);
+        let cut = GarmentCut::new(garment, &edges, self.parts);
         if cut.count() > MOST_VERTICES {
             return Err(self.too_many(cut.count()));
         }

@@ -166,8 +166,8 @@ impl Neckline {
         let most = if self.depth.is_some() { f64::INFINITY } else { chord.deepest(outline) };
         let usual = (self.usual * chord.width).min(most);
         let found = match self.depth {
-            Some(depth) => Some(Curve { depth: depth.metres(), power: 2.0 }),
-            None if dips => Some(Curve { depth: lowest, power: 2.0 }),
+            Some(depth) => Some(NeckCurve { depth: depth.metres(), power: 2.0 }),
+            None if dips => Some(NeckCurve { depth: lowest, power: 2.0 }),
             None => photo
                 .zip(outline.frame)
                 .and_then(|(p, frame)| chord.find(p, frame.joined(p.joined), &collar, most)),
@@ -178,9 +178,9 @@ impl Neckline {
                 usual * 1e3,
                 set(usual + MORE)
             ));
-            Curve { depth: usual, power: 2.0 }
+            NeckCurve { depth: usual, power: 2.0 }
         });
-        let mut curve = Curve { depth: curve.depth.min(most), ..curve };
+        let mut curve = NeckCurve { depth: curve.depth.min(most), ..curve };
         if self.depth.is_none() && chord.length(&curve) < least {
             let shown = curve.depth;
             curve = chord.long_enough(curve, least, most.min(DEPTHS.1 * chord.width));
@@ -210,12 +210,12 @@ fn throat(body: &Body) -> Option<f64> {
 
 /// A neckline: depth below the chord at `s` from -1 to 1 is `depth (1 - |s|^power)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Curve {
+struct NeckCurve {
     depth: f64,
     power: f64,
 }
 
-impl Curve {
+impl NeckCurve {
     fn depth_at(&self, s: f64) -> f64 {
         self.depth * (1.0 - s.abs().powf(self.power))
     }
@@ -255,19 +255,19 @@ impl Chord {
         places().map(near).collect()
     }
 
-    fn at(&self, curve: &Curve, s: f64) -> Point2 {
+    fn at(&self, curve: &NeckCurve, s: f64) -> Point2 {
         self.middle + self.half * s + self.down * curve.depth_at(s)
     }
 
-    fn length(&self, curve: &Curve) -> f64 {
+    fn length(&self, curve: &NeckCurve) -> f64 {
         let points: Vec<Point2> = (0..=200).map(|k| self.at(curve, f64::from(k) / 100.0 - 1.0)).collect();
         polyline_length(&points)
     }
 
     /// The curve made round and so deep that it is as long as `least`; as deep as `most` where that
     /// is not enough.
-    fn long_enough(&self, curve: Curve, least: f64, most: f64) -> Curve {
-        let at = |depth: f64| Curve { depth, power: curve.power.max(ROUND) };
+    fn long_enough(&self, curve: NeckCurve, least: f64, most: f64) -> NeckCurve {
+        let at = |depth: f64| NeckCurve { depth, power: curve.power.max(ROUND) };
         let (mut low, mut high) = (curve.depth, most.max(curve.depth));
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
@@ -277,7 +277,7 @@ impl Chord {
     }
 
     /// The curve's points without its ends.
-    fn points(&self, curve: &Curve) -> Vec<Point2> {
+    fn points(&self, curve: &NeckCurve) -> Vec<Point2> {
         // Even in s would be sparse where the curve is steep; a fine polyline is thinned instead.
         let fine: Vec<Point2> = (0..=4000).map(|k| self.at(curve, f64::from(k) / 2000.0 - 1.0)).collect();
         let length = polyline_length(&fine);
@@ -323,24 +323,24 @@ impl Chord {
 
     /// The curve of the most even change of colour below the present edge, and no deeper than
     /// `most`.
-    fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64], most: f64) -> Option<Curve> {
+    fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64], most: f64) -> Option<NeckCurve> {
         let steps = ((DEPTHS.1 - DEPTHS.0) / DEPTHS.2) as usize;
         let depths =
             (0..=steps).map(|k| (DEPTHS.0 + k as f64 * DEPTHS.2) * self.width).filter(|d| *d <= most);
         // Above the collar lies the ground, whose border is no neckline.
         let clear = MARGIN * self.across(frame);
-        let inside = |c: &Curve| {
+        let inside = |c: &NeckCurve| {
             let mut both = places().zip(collar).filter(|(s, _)| s.abs() < INSIDE);
             both.all(|(s, above)| c.depth_at(s) > above + clear)
         };
-        let curves: Vec<Curve> = depths
-            .flat_map(|depth| POWERS.iter().map(move |&power| Curve { depth, power }))
+        let curves: Vec<NeckCurve> = depths
+            .flat_map(|depth| POWERS.iter().map(move |&power| NeckCurve { depth, power }))
             .filter(inside)
             .collect();
         let across = self.across(frame);
         let changes: Vec<Change> = curves.par_iter().map(|c| self.change(photo, frame, c, across)).collect();
         // Prints have even edges too, but not where necklines are.
-        let likely = |c: &Curve| 1.0 / (1.0 + ((c.depth / self.width - USUAL.0) / USUAL.1).powi(2));
+        let likely = |c: &NeckCurve| 1.0 / (1.0 + ((c.depth / self.width - USUAL.0) / USUAL.1).powi(2));
         let score = |i: &usize| changes[*i].score() * likely(&curves[*i]);
         let seen = (0..curves.len()).filter(|i| changes[*i].median >= LEAST_CHANGE);
         let best = seen.max_by(|a, b| score(a).total_cmp(&score(b))).map(|i| curves[i])?;
@@ -348,13 +348,13 @@ impl Chord {
     }
 
     /// The best curve beside one that was found: colours compared over a quarter of the distance.
-    fn refined(&self, photo: &Photo, frame: PhotoFrame, found: Curve) -> Curve {
+    fn refined(&self, photo: &Photo, frame: PhotoFrame, found: NeckCurve) -> NeckCurve {
         let (far, near) = (self.across(frame), self.across(frame) / 4.0);
         let step = REFINE_REACH * far / f64::from(REFINE);
         let depths = (-REFINE..=REFINE).map(|k| found.depth + step * f64::from(k));
-        let curves: Vec<Curve> =
-            depths.flat_map(|depth| POWERS.iter().map(move |&power| Curve { depth, power })).collect();
-        let score = |c: &Curve| self.change(photo, frame, c, near).score();
+        let curves: Vec<NeckCurve> =
+            depths.flat_map(|depth| POWERS.iter().map(move |&power| NeckCurve { depth, power })).collect();
+        let score = |c: &NeckCurve| self.change(photo, frame, c, near).score();
         let scores: Vec<f64> = curves.par_iter().map(score).collect();
         // Of equal ones that in the middle of the plateau, nearest to what was found.
         let off = |i: &usize| {
@@ -366,7 +366,7 @@ impl Chord {
     }
 
     /// The change of colour from below a curve to above, `across` metres to either side.
-    fn change(&self, photo: &Photo, frame: PhotoFrame, curve: &Curve, across: f64) -> Change {
+    fn change(&self, photo: &Photo, frame: PhotoFrame, curve: &NeckCurve, across: f64) -> Change {
         let mut changes: Vec<nalgebra::Vector3<f64>> = Vec::with_capacity(SAMPLES);
         for s in places() {
             let tangent = self.at(curve, s + 0.01) - self.at(curve, s - 0.01);

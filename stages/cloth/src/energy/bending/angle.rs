@@ -8,7 +8,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::energy::Vec3;
+use toile_geometry::Vec3;
 
 /// A triangle's normal is taken at least this long (share of the squared edge): keeps a collapsed
 /// triangle finite.

@@ -13,10 +13,10 @@ use nalgebra::{Matrix3, Vector2};
 
 use super::flap::{Flap, flaps};
 use super::patch::{Beyond, Patch, patches};
-use crate::energy::Vec3;
 use crate::fabric::Rigidity;
 use crate::linear::{BlockMatrix, Cholesky};
 use crate::mesh::Sheet;
+use toile_geometry::Vec3;
 
 /// Triangles of different panels meet with different rest frames, m.
 const SAME_FRAME: f64 = 1e-9;

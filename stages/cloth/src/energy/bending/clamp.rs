@@ -12,7 +12,7 @@ use crate::energy::{Assembled, Blocks, Cloth, Element, Projection, Subset, Vec3,
 use nalgebra::Matrix3;
 
 #[derive(Debug, Clone, Copy)]
-struct Held {
+struct ClampedTriangle {
     nodes: [u32; 3],
     outward: Vec3,
     stiffness: f64,
@@ -21,7 +21,7 @@ struct Held {
 /// Boundary edges with a held slope; their nodes must be pinned as well.
 #[derive(Debug, Clone)]
 pub struct ClampedEdge {
-    held: Vec<Held>,
+    held: Vec<ClampedTriangle>,
 }
 
 impl ClampedEdge {
@@ -35,13 +35,13 @@ impl ClampedEdge {
             let t = side.triangle as usize;
             let d = cloth.rigidity(t).along(&leaf(sheet, t, side.corner as usize).across);
             let stiffness = factor * d * e.rest_length * e.rest_length / sheet.areas()[t];
-            Some(Held { nodes: [e.vertices[0], e.vertices[1], side.opposite], outward, stiffness })
+            Some(ClampedTriangle { nodes: [e.vertices[0], e.vertices[1], side.opposite], outward, stiffness })
         });
         Assembled(Self { held: held.collect() })
     }
 }
 
-impl Held {
+impl ClampedTriangle {
     fn angle(&self, x: &[Vec3; 3]) -> f64 {
         angle(&x[0], &x[1], &x[2], &(x[0] + self.outward))
     }
@@ -107,7 +107,8 @@ impl Element<3> for ClampedEdge {
     }
 
     fn part(&self, elements: &[usize], subset: &Subset) -> Self {
-        let held = |&e: &usize| Held { nodes: subset.renumbered(self.held[e].nodes), ..self.held[e] };
+        let held =
+            |&e: &usize| ClampedTriangle { nodes: subset.renumbered(self.held[e].nodes), ..self.held[e] };
         Self { held: elements.iter().map(held).collect() }
     }
 

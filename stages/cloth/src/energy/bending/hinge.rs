@@ -61,17 +61,17 @@ impl Hinge {
 
 /// One fold of a patch: its angle, the two triangles, and where their (start, end, tip) stand in
 /// the patch.
-struct Fold {
+struct PatchFold {
     angle: f64,
     leaves: [(Leaf, [usize; 3]); 2],
 }
 
 impl Bend {
-    fn folds(&self, x: &[Vec3; 6]) -> [Option<Fold>; 3] {
+    fn folds(&self, x: &[Vec3; 6]) -> [Option<PatchFold>; 3] {
         std::array::from_fn(|k| self.fold(k, x))
     }
 
-    fn fold(&self, k: usize, x: &[Vec3; 6]) -> Option<Fold> {
+    fn fold(&self, k: usize, x: &[Vec3; 6]) -> Option<PatchFold> {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         // The far end of a held plane moves with the edge's start.
         let (tip, at) = match self.beyond[k] {
@@ -79,7 +79,7 @@ impl Bend {
             Beyond::Triangle { .. } => (x[3 + k], 3 + k),
             Beyond::Held(outward) => (x[i] + outward, i),
         };
-        Some(Fold {
+        Some(PatchFold {
             angle: angle(&x[i], &x[j], &x[k], &tip),
             leaves: [
                 (Leaf::new(&x[i], &x[j], &x[k], false), [i, j, k]),
@@ -88,12 +88,12 @@ impl Bend {
         })
     }
 
-    fn bent(&self, folds: &[Option<Fold>; 3]) -> nalgebra::Vector3<f64> {
+    fn bent(&self, folds: &[Option<PatchFold>; 3]) -> nalgebra::Vector3<f64> {
         nalgebra::Vector3::from_fn(|k, _| folds[k].as_ref().map_or(0.0, |f| f.angle - self.rest[k]))
     }
 }
 
-impl Fold {
+impl PatchFold {
     /// Derivative of the angle by the six vertices.
     fn gradient(&self) -> [Vec3; 6] {
         let mut g = [Vec3::zeros(); 6];
@@ -148,7 +148,7 @@ impl Element<6> for Hinge {
     fn state(&self, e: usize, x: &[Vec3; 6], form: Projection) -> Blocks<6> {
         let b = &self.triangles[e];
         let folds = b.folds(x);
-        let g = folds.each_ref().map(|f| f.as_ref().map_or([Vec3::zeros(); 6], Fold::gradient));
+        let g = folds.each_ref().map(|f| f.as_ref().map_or([Vec3::zeros(); 6], PatchFold::gradient));
         // Row i of the products: moments of the three folds when vertex i moves.
         let pull: [[Vec3; 6]; 3] = std::array::from_fn(|k| {
             std::array::from_fn(|v| (0..3).map(|l| g[l][v] * b.stiffness[(k, l)]).sum())

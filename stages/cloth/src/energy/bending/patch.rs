@@ -11,9 +11,9 @@
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::flap::leaf;
-use crate::energy::Vec3;
 use crate::fabric::Rigidity;
 use crate::mesh::Sheet;
+use toile_geometry::Vec3;
 
 /// Six vertices near a conic leave a curvature that hardly shows in the angles; its compliance
 /// counts at least this share of the largest, or such a triangle would lock. Irregular meshes of

@@ -11,10 +11,10 @@
 
 use super::triangles::{Law, Response};
 use crate::energy::StrainLimit;
-use crate::energy::Vec3;
 use crate::error::ClothError;
 use crate::fabric::{Curve, Fabric};
 use nalgebra::{Matrix3, Vector3};
+use toile_geometry::Vec3;
 
 /// Length of a yarn direction below which strains no longer follow it: its derivatives would grow
 /// without bound.
@@ -45,12 +45,12 @@ pub struct Woven {
 #[derive(Debug, Clone, PartialEq)]
 struct Yarn {
     curve: Curve,
-    stop: Option<Stop>,
+    stop: Option<TensionStop>,
 }
 
 /// A tension that grows with the square of the strain beyond `start`; its slope begins at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Stop {
+struct TensionStop {
     start: f64,
     /// N/m per squared unit of strain.
     growth: f64,
@@ -60,14 +60,17 @@ impl Yarn {
     fn new(curve: Curve, limit: Option<f64>) -> Self {
         let stop = limit.map(|limit| {
             let span = (1.0 - STOP_FROM) * limit;
-            Stop { start: limit - span, growth: STOP_STRAIN * curve.force(limit) / limit / (span * span) }
+            TensionStop {
+                start: limit - span,
+                growth: STOP_STRAIN * curve.force(limit) / limit / (span * span),
+            }
         });
         Self { curve, stop }
     }
 
     /// The stop and the strain beyond its start.
     #[inline]
-    fn beyond(&self, strain: f64) -> Option<(Stop, f64)> {
+    fn beyond(&self, strain: f64) -> Option<(TensionStop, f64)> {
         self.stop.map(|s| (s, strain - s.start)).filter(|(_, over)| *over > 0.0)
     }
 
@@ -88,7 +91,7 @@ impl Yarn {
 }
 
 /// Lengths of the two yarn directions, the sine between them and the shear angle.
-struct Shape {
+struct YarnShape {
     length: [f64; 2],
     sine: f64,
     gamma: f64,
@@ -96,7 +99,7 @@ struct Shape {
     turn: f64,
 }
 
-impl Shape {
+impl YarnShape {
     #[inline]
     fn of([uu, vv, uv]: [f64; 3]) -> Self {
         let length = [uu.sqrt(), vv.sqrt()];
@@ -186,7 +189,7 @@ impl Woven {
     /// derivative of each by both.
     #[must_use]
     pub fn strains([u, v]: &[Vec3; 2]) -> (Vector3<f64>, [[Vec3; 2]; 3]) {
-        let s = Shape::of([u.norm_squared(), v.norm_squared(), u.dot(v)]);
+        let s = YarnShape::of([u.norm_squared(), v.norm_squared(), u.dot(v)]);
         let unit = |k: usize, f: &Vec3| f / s.length[k].max(f64::MIN_POSITIVE);
         let (d, none) = (s.by_strain(), Vec3::zeros());
         let values = Vector3::new(s.length[0] - 1.0, s.length[1] - 1.0, s.gamma);
@@ -194,7 +197,7 @@ impl Woven {
     }
 
     #[inline]
-    fn tension(&self, s: &Shape) -> [f64; 2] {
+    fn tension(&self, s: &YarnShape) -> [f64; 2] {
         let [e1, e2] = s.length.map(|l| l - 1.0);
         [self.weft.force(e1) + self.coupling * e2, self.warp.force(e2) + self.coupling * e1]
     }
@@ -207,7 +210,7 @@ impl Law for Woven {
 
     #[inline]
     fn density(&self, metric: [f64; 3]) -> f64 {
-        let s = Shape::of(metric);
+        let s = YarnShape::of(metric);
         let [e1, e2] = s.length.map(|l| l - 1.0);
         self.weft.energy(e1)
             + self.warp.energy(e2)
@@ -217,7 +220,7 @@ impl Law for Woven {
 
     #[inline]
     fn stress(&self, metric: [f64; 3]) -> [f64; 3] {
-        let s = Shape::of(metric);
+        let s = YarnShape::of(metric);
         let tension = self.tension(&s);
         let shear = s.by_strain() * self.shear.force(s.gamma.abs()).copysign(s.gamma);
         let pull = |k: usize| tension[k] / s.length[k].max(f64::MIN_POSITIVE);
@@ -226,7 +229,7 @@ impl Law for Woven {
 
     #[inline]
     fn response(&self, metric: [f64; 3], exact: bool) -> Response {
-        let s = Shape::of(metric);
+        let s = YarnShape::of(metric);
         let tension = self.tension(&s);
         let floor = s.length.map(|l| l.max(SHORTEST));
         let slope = [self.weft.slope(s.length[0] - 1.0), self.warp.slope(s.length[1] - 1.0)];

@@ -23,11 +23,9 @@ use crate::statics::report::equilibrium::{Equilibrium, LevelReport, Progress};
 use crate::statics::report::error::StaticsError;
 use crate::statics::report::intersecting::{Intersections, unsolvable};
 use crate::statics::report::unbalanced::unbalanced;
-use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Instant;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Rounds at most in which nodes are moved out where triangles dip into the body.
 const CLEARANCE_ROUNDS: usize = 12;

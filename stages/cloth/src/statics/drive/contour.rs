@@ -11,11 +11,8 @@
 //! lies below cloth along its whole length.
 
 use crate::mesh::{Edge, Sheet};
-use nalgebra::Vector3;
 use std::collections::HashMap;
-use toile_geometry::cloth_tree::ClothTree;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// Greatest move of an edge in a sweep, as a share of the mean edge length.
 const LONGEST_MOVE: f64 = 0.3;

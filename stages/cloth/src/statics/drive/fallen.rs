@@ -9,9 +9,7 @@ use crate::statics::drive::coarse_to_fine::Solve;
 use crate::statics::forces::system::System;
 use crate::statics::levels::cloths::pieces_of_scene;
 use crate::statics::report::error::StaticsError;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// The panels that have fallen, as a list for messages.
 pub(crate) fn list_of(scene: &Scene, is_fallen: &[bool]) -> String {

@@ -8,9 +8,7 @@ use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::report::equilibrium::Equilibrium;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 impl Equilibrium {
     /// The history of friction in this state.

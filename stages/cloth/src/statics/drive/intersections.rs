@@ -14,9 +14,7 @@ use crate::statics::newton::patience::{Patience, Shrinking};
 use crate::statics::newton::to_rest::NewtonOptions;
 use crate::statics::report::equilibrium::{LevelReport, Progress};
 use crate::statics::report::error::StaticsError;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Rings of nodes that are smoothed around the crossings, for each try.
 const RINGS: [usize; 3] = [2, 4, 8];

@@ -20,11 +20,8 @@ use crate::statics::levels::assemble::{Collider, assemble, cloths, kept_seam_for
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, Outcome, Proof, greatest};
 use crate::statics::report::unbalanced::unbalanced;
-use nalgebra::Vector3;
 use std::time::Instant;
-use toile_geometry::cloth_tree::ClothTree;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// First step of pseudo-time, of a garment that was at rest, s.
 const FIRST: f64 = 0.2;

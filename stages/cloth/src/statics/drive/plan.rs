@@ -20,10 +20,7 @@ use crate::statics::newton::settings::StaticEquilibrium;
 use crate::statics::report::error::StaticsError;
 use crate::statics::report::start::{crossing, crossings_at_start};
 use crate::stopper::Stopper;
-use nalgebra::Vector3;
-use toile_geometry::cloth_tree::ClothTree;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// The levels of a scene. A plan does not change, so that a finer level can be prepared while a
 /// coarser one is solved.

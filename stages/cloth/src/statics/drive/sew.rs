@@ -25,9 +25,7 @@ use crate::statics::report::equilibrium::Progress;
 use crate::statics::report::error::MOST_EDGES;
 use crate::statics::report::error::StaticsError;
 use crate::statics::report::start::probably_reversed;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Closing force per metre of seam in the first round, as a share of stretch stiffness: the strain
 /// that it causes.

@@ -22,7 +22,7 @@ const SAME_GAP: f64 = 0.01;
 
 /// How well a garment is sewn on its coarsest mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trial {
+pub struct StartTrial {
     /// The widest gap of a seam, m; 0 where all are joined.
     pub gap: f64,
     /// Pairs of triangles of the cloth that cross.
@@ -31,7 +31,7 @@ pub struct Trial {
     pub pierced: usize,
 }
 
-impl Trial {
+impl StartTrial {
     /// Whether all seams are joined, and nothing crosses.
     #[must_use]
     pub fn is_clean(&self) -> bool {
@@ -61,7 +61,7 @@ impl StaticEquilibrium {
         collider: Option<Collider<'_>>,
         around: &[&dyn CollisionSurface],
         stopper: &Stopper,
-    ) -> Result<Trial, StaticsError> {
+    ) -> Result<StartTrial, StaticsError> {
         scene.check()?;
         let surface = around.first().copied().or(collider.map(|c| c.surface));
         let start = moved_out::<StaticsError>(scene, surface, self.join_gap)?;
@@ -71,13 +71,13 @@ impl StaticEquilibrium {
         match solve.sew(&mut |_| ControlFlow::Continue(())) {
             Ok(()) => {}
             Err(StaticsError::SeamNotClosed { gap, .. }) => {
-                return Ok(Trial { gap, crossings: 0, pierced: 0 });
+                return Ok(StartTrial { gap, crossings: 0, pierced: 0 });
             }
             Err(error) => return Err(error),
         }
         let level = plan.coarsest_level();
         let sheet = plan.pieces[level].sewn_sheet(&plan.cloths)?;
         let pierced = collider.map_or(0, |c| pierced(&sheet, c.surface, &solve.x));
-        Ok(Trial { gap: 0.0, crossings: solve.crossings, pierced })
+        Ok(StartTrial { gap: 0.0, crossings: solve.crossings, pierced })
     }
 }

@@ -9,9 +9,8 @@
 use crate::linear::Pattern;
 use crate::statics::factor::multifrontal::{Factor, Halt, Stop, Symbolic};
 use crate::statics::factor::scalar::Precision;
-use nalgebra::{Matrix3, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
 
 /// Greatest residual of a solution in single precision, as a share of the right-hand side. The step
 /// is then accurate to about a thousandth, which is more than Newton's method needs.

@@ -31,7 +31,7 @@ pub struct Part {
 /// The parts, children before parents; the last is the root. Held nodes are in none.
 pub fn dissect(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Part> {
     let n = pattern.nodes();
-    let neighbours = Neighbours::new(pattern);
+    let neighbours = NodeNeighbours::new(pattern);
     let mut bisector = Bisector::new(layout, &neighbours);
     let mut parts = Vec::new();
     let all: Vec<u32> = (0..n as u32).filter(|&i| !pattern.is_held(i)).collect();
@@ -42,7 +42,7 @@ pub fn dissect(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Part> {
 /// The layout after some rounds in which each node moves to the mean of the nodes that it is
 /// coupled to, so that uneven rows and irregular meshes can be cut straight.
 pub fn smoothed(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
-    let neighbours = Neighbours::new(pattern);
+    let neighbours = NodeNeighbours::new(pattern);
     let mut layout = layout.to_vec();
     for _ in 0..ROUNDS {
         layout = (0..layout.len() as u32).map(|i| middle(i, neighbours.of(i), &layout)).collect();
@@ -57,12 +57,12 @@ fn middle(i: u32, near: &[u32], layout: &[Vector3<f64>]) -> Vector3<f64> {
 }
 
 /// Both directions of the pattern.
-struct Neighbours {
+struct NodeNeighbours {
     starts: Vec<u32>,
     of: Vec<u32>,
 }
 
-impl Neighbours {
+impl NodeNeighbours {
     fn new(pattern: &Pattern) -> Self {
         let mut starts = vec![0u32; pattern.nodes() + 1];
         for (i, j, _) in pattern.upper() {

@@ -11,13 +11,12 @@ use crate::energy::Subset;
 use crate::linear::Pattern;
 use crate::statics::forces::distance_query::{ContactQuery, DistanceCache};
 use crate::statics::forces::force::{Force, Place, of_type};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
 
 mod guard;
 mod offsets;
 mod query;
-
-type Vec3 = Vector3<f64>;
 
 /// Distance, as a share of the offset, within which a node that has just come near carries its
 /// weight.

@@ -10,11 +10,8 @@
 
 use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
-use nalgebra::Vector3;
 use rayon::prelude::*;
-use toile_geometry::facets::Facets;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, facets::Facets};
 
 /// Spacing of the lattice, m: over a limb of 2 cm radius the surface between its points rises by
 /// less than [`GAP`] and a half.

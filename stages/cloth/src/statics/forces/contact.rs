@@ -1,9 +1,7 @@
 //! One contact of cloth with itself.
 
 use crate::statics::forces::contact_potential::ContactPotential;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Two features in contact.
 #[derive(Debug, Clone, Copy)]

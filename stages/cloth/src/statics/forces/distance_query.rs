@@ -3,10 +3,7 @@
 //! Method: the distance at the last query bounds the distance now, by how far the node has moved.
 //! Cost: O(1).
 
-use nalgebra::Vector3;
-use toile_geometry::signed_distance::Nearest;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, signed_distance::Nearest};
 
 /// Allowance for rounding in bounds on a distance, m.
 pub(crate) const NUDGE: f64 = 1e-9;

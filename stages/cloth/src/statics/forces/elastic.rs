@@ -17,14 +17,14 @@ pub struct Elastic {
     /// The corners of the triangles.
     faces: Vec<[u32; 3]>,
     /// The places of the blocks in the matrix of the sheet alone.
-    own: Layout,
+    own: MatrixLayout,
     /// The same in the matrix with contacts.
-    placed: Layout,
+    placed: MatrixLayout,
 }
 
 /// The places of each energy in a matrix, and the sum of the constant part.
 #[derive(Debug, Clone, Default)]
-struct Layout {
+struct MatrixLayout {
     places: Vec<Places>,
     constant: Vec<Matrix3<f64>>,
 }
@@ -66,7 +66,7 @@ impl Elastic {
             energies.push(Box::new(Creases::new(cloth, creases)));
         }
         let faces = cloth.sheet.triangles().to_vec();
-        Ok(Self { energies, faces, own: Layout::default(), placed: Layout::default() })
+        Ok(Self { energies, faces, own: MatrixLayout::default(), placed: MatrixLayout::default() })
     }
 
     /// Makes bending so many times stiffer, from the next [`Self::bind`] on.
@@ -93,7 +93,7 @@ impl Elastic {
         for (e, places) in self.energies.iter().zip(&places).filter(|(e, _)| e.is_constant()) {
             e.add_matrix(&nowhere, Projection::PositiveSemiDefinite, places, &mut constant);
         }
-        self.own = Layout { places, constant };
+        self.own = MatrixLayout { places, constant };
         self.placed = self.own.clone();
     }
 
@@ -175,8 +175,8 @@ impl Elastic {
         Self {
             energies: self.energies.iter().map(|e| e.part(subset)).collect(),
             faces: touched.map(|f| subset.renumbered(*f)).collect(),
-            own: Layout::default(),
-            placed: Layout::default(),
+            own: MatrixLayout::default(),
+            placed: MatrixLayout::default(),
         }
     }
 

@@ -14,11 +14,10 @@ use crate::energy::Subset;
 use crate::linear::Pattern;
 use crate::statics::forces::distance_query::ContactQuery;
 use crate::statics::forces::loads::Loads;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use std::any::Any;
 use std::fmt::Debug;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Positions of the nodes, with what acts on them and is known there.
 #[derive(Clone, Copy)]

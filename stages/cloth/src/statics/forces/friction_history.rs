@@ -11,9 +11,7 @@
 use crate::contact::coulomb::{Coulomb, FrictionMemory, mean_by_load};
 use crate::contact::friction::FrictionContact;
 use crate::statics::forces::contact::Contact;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// The sum of nodes times weights.
 pub(crate) fn between(nodes: &[u32; 4], weights: &[f64; 4], x: &[Vec3]) -> Vec3 {

@@ -5,9 +5,8 @@
 //! mean height of its nodes near the initial one, and leaves its edges free to move. Cost: O(n).
 
 use crate::energy::Subset;
-use nalgebra::{Matrix3, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
 
 /// Springs along one direction between the mean position of groups of nodes and the initial one.
 #[derive(Debug, Clone)]

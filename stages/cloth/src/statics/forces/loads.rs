@@ -2,9 +2,8 @@
 
 use crate::energy::Subset;
 use crate::statics::forces::height_springs::HeightSprings;
-use nalgebra::{Matrix3, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
 
 /// The masses of the nodes and what pulls on them.
 #[derive(Debug, Clone)]

@@ -12,9 +12,7 @@
 use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use crate::statics::forces::clearance::{LEAST_RADIUS, lattice};
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Least depth of a point that may lie near the axis of a limb, m.
 const DEEP: f64 = 0.5 * LEAST_RADIUS;

@@ -22,15 +22,13 @@ use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::contact_potential::ContactPotential;
 use crate::statics::forces::distance_query::NUDGE;
 use crate::statics::forces::force::{Force, Place, of_type};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
-use toile_geometry::pair::Kind;
 use toile_geometry::sharp::{Sharp, Side};
+use toile_geometry::{Vec3, pair::Kind};
 
 mod limit;
-
-type Vec3 = Vector3<f64>;
 
 /// How far beyond one thickness pairs are sought, in thicknesses. The pairs stay valid until the
 /// cloth has moved that far.
@@ -49,7 +47,7 @@ const DEEPEST: f64 = 0.5;
 
 /// An edge of the cloth, or a triangle of it, and a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Pair {
+pub(crate) struct RidgePair {
     /// Which feature.
     feature: u32,
     /// Nodes; of an edge the last one twice.
@@ -71,7 +69,7 @@ struct Near {
 /// A contact between the cloth and a feature.
 #[derive(Debug, Clone, Copy)]
 struct Contact {
-    pair: Pair,
+    pair: RidgePair,
     weights: [f64; 3],
     /// Unit direction in which the feature presses.
     normal: Vec3,
@@ -99,21 +97,21 @@ pub struct Ridges {
     /// The coefficients while friction is disabled.
     disabled_friction: Vec<f64>,
     /// Pairs that may touch, sorted.
-    pairs: Vec<Pair>,
+    pairs: Vec<RidgePair>,
     /// Where the nodes were when the pairs were sought; `None` where the pairs hold for one step
     /// only.
     at: Option<Vec<Vec3>>,
     /// How far they may move from there, m.
     slack: f64,
     /// Pairs whose cloth the body passes through, sorted.
-    pierced: Vec<Pair>,
+    pierced: Vec<RidgePair>,
     contacts: Vec<Contact>,
 }
 
 /// An edge of the cloth or a corner of the body: each is pushed out over one feature only.
 type Part = [u32; 3];
 
-impl Pair {
+impl RidgePair {
     fn part(&self) -> Part {
         if self.count() == 2 { self.nodes } else { [u32::MAX, u32::MAX, self.feature] }
     }
@@ -251,7 +249,7 @@ impl Ridges {
     }
 
     /// Pairs that may come nearer than `reach` on the way, sorted.
-    fn pairs_about(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
+    fn pairs_about(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<RidgePair> {
         let reach = Vec3::repeat(reach);
         let search = |kind: Kind, nodes: [u32; 3]| {
             let (mut low, mut high) = (x[nodes[0] as usize], x[nodes[0] as usize]);
@@ -260,12 +258,13 @@ impl Ridges {
                 (low, high) = (low.inf(&p).inf(&q), high.sup(&p).sup(&q));
             }
             let mut found = Vec::new();
-            self.sharp
-                .within(kind, &(low - reach), &(high + reach), |feature| found.push(Pair { feature, nodes }));
+            self.sharp.within(kind, &(low - reach), &(high + reach), |feature| {
+                found.push(RidgePair { feature, nodes })
+            });
             found
         };
         let edges = self.edges.par_iter().with_min_len(CHUNK);
-        let mut pairs: Vec<Pair> =
+        let mut pairs: Vec<RidgePair> =
             edges.flat_map_iter(|[a, b]| search(Kind::EdgeEdge, [*a, *b, *b])).collect();
         let triangles = self.triangles.par_iter().with_min_len(CHUNK);
         pairs.par_extend(triangles.flat_map_iter(|t| search(Kind::VertexTriangle, *t)));
@@ -285,7 +284,7 @@ impl Ridges {
     /// Adds cloth that the body has passed through since: cloth that goes around the end of a
     /// feature may sink behind another.
     fn find_newly_pierced(&mut self, body: &dyn CollisionSurface, x: &[Vec3]) {
-        let known: Vec<Part> = self.pierced.iter().map(Pair::part).collect();
+        let known: Vec<Part> = self.pierced.iter().map(RidgePair::part).collect();
         let sunk = self.sunk(body, &self.pairs, x, self.thickness);
         self.pierced.extend(sunk.into_iter().filter(|(part, _)| !known.contains(part)).map(|p| p.1));
         self.pierced.sort_unstable();
@@ -296,28 +295,28 @@ impl Ridges {
     fn sunk(
         &self,
         body: &dyn CollisionSurface,
-        pairs: &[Pair],
+        pairs: &[RidgePair],
         x: &[Vec3],
         deepest: f64,
-    ) -> Vec<(Part, Pair)> {
-        let near = |p: &Pair| {
+    ) -> Vec<(Part, RidgePair)> {
+        let near = |p: &RidgePair| {
             let near = p.near(&self.sharp, x);
             let is_in = near.inside
                 && near.distance < deepest
                 && self.sharp.feature(p.feature).side(&near.off) == Side::In;
             is_in.then_some((*p, near))
         };
-        let hidden: Vec<(Pair, Near)> = pairs.iter().filter_map(near).collect();
+        let hidden: Vec<(RidgePair, Near)> = pairs.iter().filter_map(near).collect();
         if hidden.is_empty() {
             return Vec::new();
         }
-        let point = |(p, n): &(Pair, Near)| {
+        let point = |(p, n): &(RidgePair, Near)| {
             (0..p.count()).map(|k| x[p.nodes[k] as usize] * n.weights[k]).sum::<Vec3>()
         };
         let points: Vec<Vec3> = hidden.iter().map(point).collect();
         let inside = body.nearest(&points, &vec![deepest; points.len()]);
         let sunk = hidden.iter().zip(inside).filter(|(_, n)| n.is_some_and(|n| n.distance < 0.0));
-        let mut by_part: Vec<(Part, f64, Pair)> =
+        let mut by_part: Vec<(Part, f64, RidgePair)> =
             sunk.map(|((p, n), _)| (p.part(), n.distance, *p)).collect();
         by_part.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         by_part.dedup_by_key(|p| p.0);
@@ -339,9 +338,9 @@ impl Ridges {
 
     /// The pairs in contact at `x`, with their distance, negative where the body passes through the
     /// cloth.
-    fn feasible(&self, x: &[Vec3]) -> Vec<(Pair, Near, f64)> {
-        let mut found: Vec<(Pair, Near, f64)> = Vec::new();
-        let mut on_sides: Vec<(Pair, Near)> = Vec::new();
+    fn feasible(&self, x: &[Vec3]) -> Vec<(RidgePair, Near, f64)> {
+        let mut found: Vec<(RidgePair, Near, f64)> = Vec::new();
+        let mut on_sides: Vec<(RidgePair, Near)> = Vec::new();
         for p in &self.pairs {
             let near = p.near(&self.sharp, x);
             let touches = near.distance < self.thickness && near.distance > 0.0;
@@ -366,9 +365,9 @@ impl Ridges {
 
     /// Adds each corner of the body that is nearest to a side of a triangle once, unless it is
     /// nearest to the inside of one of the triangles of that side.
-    fn add_sides(&self, on_sides: &[(Pair, Near)], found: &mut Vec<(Pair, Near, f64)>) {
-        let has = |p: &Pair, side: &[u32; 2]| side.iter().all(|i| p.nodes.contains(i));
-        let inside: Vec<Pair> = found.iter().map(|(p, ..)| *p).filter(|p| p.count() == 3).collect();
+    fn add_sides(&self, on_sides: &[(RidgePair, Near)], found: &mut Vec<(RidgePair, Near, f64)>) {
+        let has = |p: &RidgePair, side: &[u32; 2]| side.iter().all(|i| p.nodes.contains(i));
+        let inside: Vec<RidgePair> = found.iter().map(|(p, ..)| *p).filter(|p| p.count() == 3).collect();
         let mut seen: Vec<(u32, [u32; 2])> = Vec::new();
         for (p, near) in on_sides {
             let Some(side) = near.side(&p.nodes) else { continue };
@@ -398,7 +397,7 @@ impl Ridges {
             .collect();
     }
 
-    fn potential(&self, pair: &Pair, near: &Near, distance: f64) -> ContactPotential {
+    fn potential(&self, pair: &RidgePair, near: &Near, distance: f64) -> ContactPotential {
         let parts = (0..pair.count()).map(|k| near.weights[k] * self.stiffness[pair.nodes[k] as usize]);
         let stiffness = parts.sum();
         match distance > 0.0 {
@@ -409,7 +408,7 @@ impl Ridges {
 
     fn contact(
         &self,
-        pair: &Pair,
+        pair: &RidgePair,
         near: &Near,
         distance: f64,
         x: &[Vec3],
@@ -497,9 +496,9 @@ impl Force for Ridges {
     }
 
     fn restrict(&self, cut: &Subset) -> Box<dyn Force> {
-        let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
-        let knows = |p: &&Pair| cut.knows(&p.nodes);
-        let mut pierced: Vec<Pair> = self.pierced.iter().filter(knows).map(pair).collect();
+        let pair = |p: &RidgePair| RidgePair { nodes: cut.renumbered(p.nodes), ..*p };
+        let knows = |p: &&RidgePair| cut.knows(&p.nodes);
+        let mut pierced: Vec<RidgePair> = self.pierced.iter().filter(knows).map(pair).collect();
         pierced.sort_unstable();
         let contacts = self.contacts.iter().filter(|c| cut.knows(&c.pair.nodes));
         let edges = self.edges.iter().filter(|e| cut.knows(&e[..]));
@@ -522,7 +521,7 @@ impl Force for Ridges {
 
     fn merge(&mut self, cut: &Subset, part: &dyn Force) {
         let Some(part) = of_type::<Self>(part) else { return };
-        let whole = |p: &Pair| Pair { nodes: cut.in_whole(p.nodes), ..*p };
+        let whole = |p: &RidgePair| RidgePair { nodes: cut.in_whole(p.nodes), ..*p };
         self.contacts.retain(|c| !cut.knows(&c.pair.nodes));
         self.contacts.extend(part.contacts.iter().map(|c| Contact { pair: whole(&c.pair), ..*c }));
         self.contacts.sort_by_key(|c| c.pair);
@@ -543,7 +542,7 @@ impl Force for Ridges {
 }
 
 /// The edges of the cloth among `pairs` that lead from their first node, outside the body, into it.
-fn leads_in(body: &dyn CollisionSurface, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
+fn leads_in(body: &dyn CollisionSurface, pairs: &[RidgePair], x: &[Vec3]) -> Vec<[u32; 2]> {
     let mut edges: Vec<[u32; 2]> =
         pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]).collect();
     edges.sort_unstable();
@@ -557,7 +556,7 @@ fn leads_in(body: &dyn CollisionSurface, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32
 }
 
 /// The mean tangential displacement of the contacts of the same cloth, weighted by their loads.
-fn taken_over(pair: &Pair, before: &[Contact], displacements: &[Vec3]) -> Vec3 {
+fn taken_over(pair: &RidgePair, before: &[Contact], displacements: &[Vec3]) -> Vec3 {
     let is_same = |c: &Contact| {
         c.memory.load > 0.0 && c.pair.nodes[..c.pair.count()].iter().any(|i| pair.nodes.contains(i))
     };

@@ -6,9 +6,8 @@
 use crate::energy::Subset;
 use crate::linear::{Pattern, add_at};
 use crate::statics::forces::force::Force;
-use nalgebra::{Matrix3, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
 
 /// The closing force of one pair of nodes, which hardly depends on the gap.
 #[derive(Debug, Clone, Copy)]

@@ -13,17 +13,15 @@ use crate::statics::forces::contact::Contact;
 use crate::statics::forces::contact_potential::ContactPotential;
 use crate::statics::forces::force::{Force, Place, of_type};
 use crate::statics::forces::friction_history::{FrictionHistory, between};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
-use toile_geometry::closest::Feature;
 use toile_geometry::pair::{Closest, Kind, Pair};
+use toile_geometry::{Vec3, closest::Feature};
 
 mod intersections;
 mod stacked;
 
 pub(crate) use intersections::MERGED;
-
-type Vec3 = Vector3<f64>;
 
 /// Pairs that may touch, their contacts and their friction.
 #[derive(Debug, Clone)]

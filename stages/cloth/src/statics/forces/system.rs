@@ -19,10 +19,9 @@ use crate::statics::forces::loads::Loads;
 use crate::statics::forces::ridges::Ridges;
 use crate::statics::forces::seam_force::{SeamForce, SeamForces};
 use crate::statics::forces::self_contact::SelfContact;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use std::any::Any;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// All that acts on the nodes.
 #[derive(Debug, Clone)]

@@ -15,9 +15,7 @@ use crate::statics::forces::seam_force::SeamForce;
 use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::Pieces;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Pressure of contact at distance 0, as a share of stretch stiffness per metre of thickness. Cloth
 /// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer

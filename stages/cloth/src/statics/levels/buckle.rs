@@ -6,9 +6,8 @@
 //! of their plane. Cost: O(n). Limit: which folds form is chance, as it is for real cloth.
 
 use crate::statics::levels::pieces::Pieces;
-use nalgebra::{SymmetricEigen, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::SymmetricEigen;
+use toile_geometry::Vec3;
 
 /// Thickness, as a share of its size, below which cloth counts as flat.
 const FLAT: f64 = 1e-6;

@@ -8,7 +8,7 @@
 //! of the vertices remain.
 
 use self::keep::independent;
-use self::locate::Locator;
+use self::locate::CoarseLocator;
 use crate::statics::levels::pieces::Pieces;
 use nalgebra::{Vector2, Vector3};
 
@@ -38,7 +38,7 @@ impl Coarser {
 /// The next coarser level, or `None` where little can be removed.
 #[must_use]
 pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
-    let mut mesh = Mesh::new(fine);
+    let mut mesh = CoarseningMesh::new(fine);
     let bare: Vec<bool> = mesh.at.iter().map(Vec::is_empty).collect();
     let keep = independent(fine, &mesh);
     // Vertices that could not be collapsed are tried again after their neighbours have gone.
@@ -62,7 +62,7 @@ pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
     }
     kept.iter().enumerate().for_each(|(k, &v)| number[v as usize] = k as u32);
     let pieces = restrict(fine, &kept, alive.iter().map(|t| t.map(|v| number[v as usize])).collect());
-    let mut weights = Locator::new(&pieces).weights(fine);
+    let mut weights = CoarseLocator::new(&pieces).weights(fine);
     anchors.iter().for_each(|&v| weights[v as usize] = ([number[v as usize]; 3], [1.0, 0.0, 0.0]));
     Some(Coarser { pieces, kept, weights })
 }
@@ -104,7 +104,7 @@ fn renumber(kept: &[u32], group: &[u32], groups: usize) -> (Vec<u32>, usize) {
     (numbers, count as usize)
 }
 
-struct Mesh {
+struct CoarseningMesh {
     triangles: Vec<[u32; 3]>,
     dead: Vec<bool>,
     /// Triangles at each vertex.
@@ -116,7 +116,7 @@ struct Mesh {
     on_outline: Vec<bool>,
 }
 
-impl Mesh {
+impl CoarseningMesh {
     fn new(fine: &Pieces) -> Self {
         let n = fine.rest.len();
         let mut at = vec![Vec::new(); n];

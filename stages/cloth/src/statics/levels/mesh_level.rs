@@ -3,9 +3,8 @@
 use crate::mesh::Sheet;
 use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::system::System;
-use nalgebra::{Rotation3, Vector3};
-
-type Vec3 = Vector3<f64>;
+use nalgebra::Rotation3;
+use toile_geometry::Vec3;
 
 /// A mesh level and the state of its nodes.
 #[derive(Clone)]

@@ -9,9 +9,7 @@ use crate::statics::newton::line_search::ROUNDING;
 use crate::statics::newton::nearby::Nearby;
 use crate::statics::newton::subdomain::{Subdomain, widen};
 use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, greatest};
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Share of the greatest move above which a node is active.
 const ACTIVE: f64 = 0.3;

@@ -6,9 +6,7 @@
 
 use crate::statics::forces::system::{Evaluation, System};
 use crate::statics::newton::state::greatest;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Halvings of a step before it is made as it is.
 const MOST_HALVINGS: u32 = 6;

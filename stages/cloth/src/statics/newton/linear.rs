@@ -11,10 +11,9 @@ use crate::statics::factor::multifrontal::{Halt, Stop, Symbolic};
 use crate::statics::factor::nested_dissection::smoothed;
 use crate::statics::factor::scalar::Precision;
 use crate::statics::forces::system::System;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use std::collections::BTreeMap;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Share of the compressive stress in the matrix near rest, where the matrix stays positive
 /// definite. With all of it the matrix is the true second derivative, which is indefinite in most

@@ -10,11 +10,8 @@ use crate::contact::response::respond;
 use crate::contact::step_limit::{colliding, limit_with_search};
 use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
-use nalgebra::Vector3;
-use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::Pair;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// Share of the slack that may be used up when a subdomain begins, which keeps the known pairs.
 const KEPT: f64 = 0.3;

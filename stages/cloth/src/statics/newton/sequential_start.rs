@@ -18,12 +18,9 @@ use crate::statics::levels::pieces::count_cloths;
 use crate::statics::newton::nearby::Nearby;
 use crate::statics::newton::state::{NewtonOptions, NewtonState, Watch};
 use crate::statics::newton::subdomain::Subdomain;
-use nalgebra::Vector3;
 use std::ops::ControlFlow;
-use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::components::groups;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// Least number of cloths that start one by one. Fewer come to rest together sooner.
 const MANY: usize = 6;

@@ -5,10 +5,8 @@ use crate::statics::forces::distance_query::ContactQuery;
 use crate::statics::forces::system::System;
 use crate::statics::newton::linear::Linear;
 use crate::statics::newton::nearby::Nearby;
-use nalgebra::Vector3;
 use std::ops::ControlFlow;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// What proves that the cloth is at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

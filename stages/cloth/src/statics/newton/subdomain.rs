@@ -7,10 +7,7 @@
 
 use crate::energy::Subset;
 use crate::statics::forces::system::System;
-use nalgebra::Vector3;
-use toile_geometry::cloth_tree::ClothTree;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// Some nodes of a system as a system of their own.
 pub(crate) struct Subdomain<'a> {

@@ -34,10 +34,7 @@ use crate::statics::newton::nearby::Nearby;
 use crate::statics::newton::sequential_start::{StackStart, start_one_by_one};
 use crate::statics::newton::state::StepEnd;
 pub use crate::statics::newton::state::{NewtonOptions, NewtonState, Outcome, Proof, Watch, greatest};
-use nalgebra::Vector3;
-use toile_geometry::cloth_tree::ClothTree;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// A proof step: the time in which cloth at rest must not gain speed, s.
 pub const REST_STEP: f64 = 1.0 / 60.0;

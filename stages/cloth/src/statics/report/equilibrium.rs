@@ -3,10 +3,8 @@
 use crate::contact::friction::FrictionContact;
 use crate::statics::newton::state::Outcome;
 use crate::statics::report::unbalanced::Unbalanced;
-use nalgebra::Vector3;
 use std::ops::ControlFlow;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// The run of one level.
 #[derive(Debug, Clone, Copy, PartialEq)]

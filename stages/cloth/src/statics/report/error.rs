@@ -9,9 +9,7 @@ use crate::statics::report::load::Load;
 use crate::statics::report::not_at_rest::unrest;
 use crate::statics::report::start::StartError;
 use crate::statics::report::words::{both, list, place};
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Greatest gap, in edges, that a seam may have because its mesh is too coarse. A polygon of n
 /// corners around a limb is longer than the girth of the limb by 3.3 edges over n, and cloth that

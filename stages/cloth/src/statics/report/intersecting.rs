@@ -8,9 +8,7 @@ use crate::statics::levels::pieces::Pieces;
 use crate::statics::report::error::{StaticsError, Unsolvable};
 use crate::statics::report::load::Load;
 use crate::statics::report::words;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// The intersections of a level.
 #[derive(Debug, Clone, Copy)]

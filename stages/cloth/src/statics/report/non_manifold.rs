@@ -15,7 +15,7 @@ const LEAST_QUALITY: f64 = 0.05;
 
 /// A side of a triangle: the vertices at its ends, the triangle, and the vertex opposite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+struct TriangleSide {
     ends: [u32; 2],
     triangle: usize,
     apex: u32,
@@ -45,7 +45,7 @@ impl Pieces {
     }
 
     /// The nodes of an edge, ascending.
-    fn sewn(&self, s: &Side) -> [u32; 2] {
+    fn sewn(&self, s: &TriangleSide) -> [u32; 2] {
         let [a, b] = s.ends.map(|v| self.node[v as usize]);
         [a.min(b), a.max(b)]
     }
@@ -62,8 +62,8 @@ impl Pieces {
     }
 
     /// The sides of triangles at each sewn edge that has more than two.
-    fn non_manifold_edges(&self) -> Vec<Vec<Side>> {
-        let mut all: Vec<([u32; 2], Side)> = self
+    fn non_manifold_edges(&self) -> Vec<Vec<TriangleSide>> {
+        let mut all: Vec<([u32; 2], TriangleSide)> = self
             .triangles
             .iter()
             .enumerate()
@@ -76,10 +76,10 @@ impl Pieces {
     }
 
     /// The two triangles after a flip of an edge, and the worse of their qualities.
-    fn flip(&self, sides: &[Side]) -> Option<(f64, Flipped)> {
+    fn flip(&self, sides: &[TriangleSide]) -> Option<(f64, Flipped)> {
         let &[s, t] = sides else { return None };
         let is_there =
-            |s: &Side| s.ends.iter().chain([&s.apex]).all(|v| self.triangles[s.triangle].contains(v));
+            |s: &TriangleSide| s.ends.iter().chain([&s.apex]).all(|v| self.triangles[s.triangle].contains(v));
         if !sides.iter().all(is_there) {
             return None;
         }
@@ -95,8 +95,12 @@ impl Pieces {
     }
 }
 
-fn sides(triangle: usize, [a, b, c]: [u32; 3]) -> [Side; 3] {
-    [[a, b, c], [b, c, a], [c, a, b]].map(|[a, b, apex]| Side { ends: [a.min(b), a.max(b)], triangle, apex })
+fn sides(triangle: usize, [a, b, c]: [u32; 3]) -> [TriangleSide; 3] {
+    [[a, b, c], [b, c, a], [c, a, b]].map(|[a, b, apex]| TriangleSide {
+        ends: [a.min(b), a.max(b)],
+        triangle,
+        apex,
+    })
 }
 
 #[cfg(test)]

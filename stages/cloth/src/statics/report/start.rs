@@ -24,11 +24,8 @@ use crate::scene::Scene;
 use crate::statics::levels::assemble::{cloths, layer_thickness};
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::report::words::{both, list, place};
-use nalgebra::Vector3;
-use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::signed_distance::Nearest;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// A fault of the initial positions.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -4,9 +4,7 @@ use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::Pieces;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// The node with the greatest residual force.
 #[derive(Debug, Clone, Copy, PartialEq)]

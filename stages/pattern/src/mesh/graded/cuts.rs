@@ -36,7 +36,7 @@ pub(crate) struct Sized<'a> {
 /// A stretch (numbered loop by loop) or, after these, an inner line of a panel; whether it runs
 /// against its tie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Side {
+struct CutSide {
     panel: usize,
     chain: usize,
     against: bool,
@@ -101,10 +101,10 @@ pub(crate) fn agree(
 }
 
 /// Which chains are cut alike: the two sides of each seam, the legs of a dart; all others alone.
-fn ties(panels: &[Sized<'_>], plan: Option<&SewingPlan>) -> Vec<Vec<Side>> {
-    let alone = |panel: usize, chain: usize| vec![Side { panel, chain, against: false }];
+fn ties(panels: &[Sized<'_>], plan: Option<&SewingPlan>) -> Vec<Vec<CutSide>> {
+    let alone = |panel: usize, chain: usize| vec![CutSide { panel, chain, against: false }];
     let each = panels.iter().enumerate().flat_map(|(i, p)| (0..p.chains()).map(move |k| alone(i, k)));
-    let mut ties: Vec<Vec<Side>> = each.collect();
+    let mut ties: Vec<Vec<CutSide>> = each.collect();
     let find = |side: &EdgeRef| {
         let panel = panels.iter().position(|p| p.name == side.panel)?;
         Some((panel, panels[panel].named(&side.edge)?))
@@ -135,17 +135,17 @@ fn head_to_tail(panel: &Sized<'_>, k: usize, j: usize) -> bool {
 }
 
 /// Puts two chains into one tie; `against` where the share of one is what is left on the other.
-fn join(ties: &mut Vec<Vec<Side>>, a: (usize, usize), b: (usize, usize), against: bool) {
-    let of = |c: (usize, usize)| move |s: &Side| (s.panel, s.chain) == c;
-    let place = |ties: &[Vec<Side>], c| ties.iter().position(|t| t.iter().any(of(c)));
+fn join(ties: &mut Vec<Vec<CutSide>>, a: (usize, usize), b: (usize, usize), against: bool) {
+    let of = |c: (usize, usize)| move |s: &CutSide| (s.panel, s.chain) == c;
+    let place = |ties: &[Vec<CutSide>], c| ties.iter().position(|t| t.iter().any(of(c)));
     let (Some(i), Some(j)) = (place(ties, a), place(ties, b)) else { return };
     if i == j {
         return;
     }
-    let runs = |t: &[Side], c| t.iter().find(|s| of(c)(s)).is_some_and(|s| s.against);
+    let runs = |t: &[CutSide], c| t.iter().find(|s| of(c)(s)).is_some_and(|s| s.against);
     let flip = runs(&ties[i], a) ^ runs(&ties[j], b) ^ against;
     let moved = std::mem::take(&mut ties[j]);
-    ties[i].extend(moved.into_iter().map(|s| Side { against: s.against ^ flip, ..s }));
+    ties[i].extend(moved.into_iter().map(|s| CutSide { against: s.against ^ flip, ..s }));
     ties.remove(j);
 }
 
@@ -155,13 +155,13 @@ fn mirrored(shares: &[f64]) -> Vec<f64> {
 }
 
 /// The greatest length of a tie's sides, metres.
-fn length(panels: &[Sized<'_>], tie: &[Side]) -> f64 {
+fn length(panels: &[Sized<'_>], tie: &[CutSide]) -> f64 {
     let lengths = tie.iter().filter_map(|s| panels[s.panel].chain(s.chain)).map(|(line, _, _)| line.length());
     lengths.fold(0.0, f64::max)
 }
 
 /// Edge lengths at equal steps along a tie, metres: the least that any side asks for.
-fn profile(panels: &[Sized<'_>], tie: &[Side]) -> Vec<f64> {
+fn profile(panels: &[Sized<'_>], tie: &[CutSide]) -> Vec<f64> {
     let (mut least, fine) = (Vec::new(), panels[tie[0].panel].field.range().fine);
     let n = (length(panels, tie) * SAMPLES.0 / fine).clamp(4.0, SAMPLES.1).ceil() as usize;
     least.resize(n + 1, f64::INFINITY);
@@ -177,7 +177,7 @@ fn profile(panels: &[Sized<'_>], tie: &[Side]) -> Vec<f64> {
 }
 
 /// Asks of every side of a tie what any of them asks; the greatest share by which a size fell.
-fn lower_both(panels: &mut [Sized<'_>], tie: &[Side]) -> f64 {
+fn lower_both(panels: &mut [Sized<'_>], tie: &[CutSide]) -> f64 {
     let least = profile(panels, tie);
     let n = least.len() - 1;
     let mut fell: f64 = 0.0;
@@ -196,7 +196,7 @@ fn lower_both(panels: &mut [Sized<'_>], tie: &[Side]) -> f64 {
 
 /// The shares of a tie's length at which it is cut: parts of equal weight, as many as the sizes ask
 /// for, more where a side's chords would else leave it.
-fn shares(panels: &[Sized<'_>], tie: &[Side]) -> Vec<f64> {
+fn shares(panels: &[Sized<'_>], tie: &[CutSide]) -> Vec<f64> {
     let (sizes, length) = (profile(panels, tie), length(panels, tie));
     let weights = weights(&sizes, length);
     let chains: Vec<_> = tie.iter().filter_map(|s| Some((s, panels[s.panel].chain(s.chain)?))).collect();
@@ -206,7 +206,7 @@ fn shares(panels: &[Sized<'_>], tie: &[Side]) -> Vec<f64> {
     let mut n = ((total - 1e-9).ceil() as usize).max(least);
     let most = ((length / (LEAST_SHARE * edge)).ceil() as usize).max(n);
     let leaves = |shares: &[f64]| {
-        let off = |(side, (line, marks, _)): &(&Side, (&Polyline, &[f64], usize))| {
+        let off = |(side, (line, marks, _)): &(&CutSide, (&Polyline, &[f64], usize))| {
             let own = if side.against { mirrored(shares) } else { shares.to_vec() };
             line.deviation(&place(line.length(), &own, marks))
         };

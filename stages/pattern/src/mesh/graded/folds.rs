@@ -11,7 +11,7 @@ use nalgebra::Matrix2;
 use toile_core::artifact::{Garment, GarmentPanel, Point2, Vector2, Vector3};
 
 /// A side of a triangle: its ends' welded vertices in order, the triangle and the corner across.
-type Side = ((u32, u32), usize, usize);
+type FoldSide = ((u32, u32), usize, usize);
 
 /// The greatest curvature of every triangle of a garment, 1/m.
 pub(crate) fn curvatures(garment: &Garment) -> Vec<f64> {
@@ -34,7 +34,7 @@ fn greatest(m: &Matrix2<f64>) -> f64 {
     mean.abs() + half.hypot(m.m12)
 }
 
-fn sides(garment: &Garment) -> Vec<Side> {
+fn sides(garment: &Garment) -> Vec<FoldSide> {
     let welded = |v: u32| garment.weld[v as usize];
     let side = |t: usize, k: usize| {
         let corners = garment.triangles[t];
@@ -65,7 +65,7 @@ fn centre(garment: &Garment, t: usize) -> Vector3 {
 
 /// Adds what a bent side contributes to its triangle: angle times length over twice the area,
 /// across the side.
-fn add(bend: &mut [Matrix2<f64>], garment: &Garment, side: &Side, angle: f64) {
+fn add(bend: &mut [Matrix2<f64>], garment: &Garment, side: &FoldSide, angle: f64) {
     let (t, k) = (side.1, side.2);
     let [a, b, c] = garment.triangles[t].map(|v| garment.rest[v as usize]);
     let twice = (b - a).perp(&(c - a)).abs();

@@ -1,12 +1,12 @@
 //! What may be wrong with a DXF file beyond repair.
 
-use super::super::faults::Fault;
+use super::super::faults::PatternFault;
 use thiserror::Error;
 use toile_core::ErrorCode;
 
 /// Why a file is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub(super) enum Damage {
+pub(super) enum DxfDamage {
     #[error("it is a binary DXF")]
     Binary,
     #[error("it has {bytes} bytes, {most} are the most")]
@@ -43,46 +43,50 @@ pub(super) enum Damage {
     Unsewable { what: String, remedy: String },
 }
 
-impl Damage {
+impl DxfDamage {
     /// What the user may do about it.
     pub(super) fn remedy(&self) -> String {
         match self {
-            Damage::Binary => "export it as ASCII DXF, release 12".into(),
-            Damage::Large { .. } | Damage::Many { .. } => "export fewer pieces or sizes at a time".into(),
-            Damage::Code { .. } | Damage::Early { .. } | Damage::Number { .. } => {
+            DxfDamage::Binary => "export it as ASCII DXF, release 12".into(),
+            DxfDamage::Large { .. } | DxfDamage::Many { .. } => {
+                "export fewer pieces or sizes at a time".into()
+            }
+            DxfDamage::Code { .. } | DxfDamage::Early { .. } | DxfDamage::Number { .. } => {
                 "export the file again; a DXF is pairs of lines, a code and its value".into()
             }
-            Damage::NoPieces => "export it as AAMA or ASTM DXF, a block for each piece and size".into(),
-            Damage::NoSize { known, .. } => format!("the sizes are {}", known.join(", ")),
-            Damage::Units { .. } => "export it with its units".into(),
-            Damage::Open { .. } | Damage::Crosses { .. } | Damage::Piece { .. } => {
+            DxfDamage::NoPieces => "export it as AAMA or ASTM DXF, a block for each piece and size".into(),
+            DxfDamage::NoSize { known, .. } => format!("the sizes are {}", known.join(", ")),
+            DxfDamage::Units { .. } => "export it with its units".into(),
+            DxfDamage::Open { .. } | DxfDamage::Crosses { .. } | DxfDamage::Piece { .. } => {
                 "draw the boundary as one closed line that meets itself nowhere".into()
             }
-            Damage::Mirror { .. } => "let the mirror line run along a straight edge of the boundary".into(),
-            Damage::Size { remedy, .. } | Damage::Unsewable { remedy, .. } => remedy.clone(),
+            DxfDamage::Mirror { .. } => {
+                "let the mirror line run along a straight edge of the boundary".into()
+            }
+            DxfDamage::Size { remedy, .. } | DxfDamage::Unsewable { remedy, .. } => remedy.clone(),
         }
     }
 
     /// As a fault of the file.
-    pub(super) fn fault(&self) -> Fault {
-        let param = if matches!(self, Damage::NoSize { .. }) { "size" } else { "file" };
+    pub(super) fn fault(&self) -> PatternFault {
+        let param = if matches!(self, DxfDamage::NoSize { .. }) { "size" } else { "file" };
         let code = match self {
-            Damage::Crosses { .. } => ErrorCode::DegenerateTriangles,
-            Damage::NoSize { .. } => ErrorCode::InvalidParameter,
-            Damage::Binary
-            | Damage::Large { .. }
-            | Damage::Code { .. }
-            | Damage::Early { .. }
-            | Damage::Number { .. }
-            | Damage::Many { .. }
-            | Damage::NoPieces
-            | Damage::Units { .. }
-            | Damage::Open { .. }
-            | Damage::Mirror { .. }
-            | Damage::Piece { .. }
-            | Damage::Size { .. }
-            | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
+            DxfDamage::Crosses { .. } => ErrorCode::DegenerateTriangles,
+            DxfDamage::NoSize { .. } => ErrorCode::InvalidParameter,
+            DxfDamage::Binary
+            | DxfDamage::Large { .. }
+            | DxfDamage::Code { .. }
+            | DxfDamage::Early { .. }
+            | DxfDamage::Number { .. }
+            | DxfDamage::Many { .. }
+            | DxfDamage::NoPieces
+            | DxfDamage::Units { .. }
+            | DxfDamage::Open { .. }
+            | DxfDamage::Mirror { .. }
+            | DxfDamage::Piece { .. }
+            | DxfDamage::Size { .. }
+            | DxfDamage::Unsewable { .. } => ErrorCode::PatternLoading,
         };
-        Fault { code, param, what: self.to_string(), remedy: Some(self.remedy()) }
+        PatternFault { code, param, what: self.to_string(), remedy: Some(self.remedy()) }
     }
 }

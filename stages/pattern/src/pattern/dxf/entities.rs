@@ -5,7 +5,7 @@
 //! boundary drawn finely. Lines are LINE, POLYLINE and LWPOLYLINE with their bulges, ARC, CIRCLE,
 //! ELLIPSE and SPLINE; what else is drawn is kept by its name, to be told.
 
-use super::damage::Damage;
+use super::damage::DxfDamage;
 use super::spline::Spline;
 use super::tags::Tag;
 use super::words;
@@ -62,7 +62,7 @@ impl Stroke {
 
 /// What is drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
+pub(super) enum EntityShape {
     Text(String),
     Line(Stroke),
     /// A point with the greater of the two depths that notches carry, 0 where there are none.
@@ -87,7 +87,7 @@ pub(super) struct Entity {
     pub layer: i32,
     pub layer_name: String,
     pub line: usize,
-    pub shape: Shape,
+    pub shape: EntityShape,
 }
 
 /// A block, or what stands outside of blocks (without a name).
@@ -109,26 +109,26 @@ struct Polyline {
 }
 
 /// The tags of one entity.
-struct Body<'a>(&'a [Tag]);
+struct EntityTags<'a>(&'a [Tag]);
 
-impl Body<'_> {
+impl EntityTags<'_> {
     fn one(&self, code: i32) -> Option<&Tag> {
         self.0.iter().find(|t| t.code == code)
     }
 
-    fn number(&self, code: i32) -> Result<f64, Damage> {
+    fn number(&self, code: i32) -> Result<f64, DxfDamage> {
         self.one(code).map_or(Ok(0.0), Tag::number)
     }
 
-    fn all(&self, code: i32) -> Result<Vec<f64>, Damage> {
+    fn all(&self, code: i32) -> Result<Vec<f64>, DxfDamage> {
         self.0.iter().filter(|t| t.code == code).map(Tag::number).collect()
     }
 
-    fn point(&self, x: i32) -> Result<Point2, Damage> {
+    fn point(&self, x: i32) -> Result<Point2, DxfDamage> {
         Ok(Point2::new(self.number(x)?, self.number(x + 10)?))
     }
 
-    fn points(&self, x: i32) -> Result<Vec<Point2>, Damage> {
+    fn points(&self, x: i32) -> Result<Vec<Point2>, DxfDamage> {
         let (x, y) = (self.all(x)?, self.all(x + 10)?);
         Ok(x.into_iter().zip(y).map(|(x, y)| Point2::new(x, y)).collect())
     }
@@ -147,12 +147,12 @@ impl Body<'_> {
     }
 
     /// Whether it is drawn as seen from below, its x to the left.
-    fn is_mirrored(&self) -> Result<bool, Damage> {
+    fn is_mirrored(&self) -> Result<bool, DxfDamage> {
         Ok(self.number(230)? < 0.0)
     }
 
     /// The points of a LWPOLYLINE with their bulges.
-    fn bulged(&self) -> Result<Vec<(Point2, f64)>, Damage> {
+    fn bulged(&self) -> Result<Vec<(Point2, f64)>, DxfDamage> {
         let mut out: Vec<(Point2, f64)> = Vec::new();
         for t in self.0 {
             match (t.code, out.last_mut()) {
@@ -166,7 +166,7 @@ impl Body<'_> {
     }
 
     /// An arc around a centre; a whole circle where it has no angles.
-    fn arc(&self, whole: bool) -> Result<Option<Stroke>, Damage> {
+    fn arc(&self, whole: bool) -> Result<Option<Stroke>, DxfDamage> {
         let (centre, radius) = (self.point(10)?, self.number(40)?);
         let (from, to) = if whole { (0.0, 360.0) } else { (self.number(50)?, self.number(51)?) };
         let turn = if whole { 360.0 } else { (to - from).rem_euclid(360.0) };
@@ -187,7 +187,7 @@ impl Body<'_> {
         Ok(Some(Stroke { start, parts, closed: whole }))
     }
 
-    fn ellipse(&self) -> Result<Option<Stroke>, Damage> {
+    fn ellipse(&self) -> Result<Option<Stroke>, DxfDamage> {
         let (centre, major, ratio) = (self.point(10)?, self.point(11)?.coords, self.number(40)?);
         let (from, to) = (self.number(41)?, self.number(42)?);
         let whole = (to - from).abs() < 1e-9 || (to - from - std::f64::consts::TAU).abs() < 1e-9;
@@ -222,11 +222,11 @@ impl Body<'_> {
         Ok((!parts.is_empty()).then_some(Stroke { start, parts, closed: whole }))
     }
 
-    fn spline(&self) -> Result<Option<Stroke>, Damage> {
+    fn spline(&self) -> Result<Option<Stroke>, DxfDamage> {
         let degree = self.number(71)?;
         let tangent = |code: i32| {
             let given = self.one(code).is_some();
-            Ok::<_, Damage>(if given { Some(self.point(code)?.coords) } else { None })
+            Ok::<_, DxfDamage>(if given { Some(self.point(code)?.coords) } else { None })
         };
         let spline = Spline {
             degree: if (1.0..100.0).contains(&degree) { degree as usize } else { 0 },
@@ -242,8 +242,8 @@ impl Body<'_> {
     }
 
     /// What an entity of that kind is; none where it is nothing by itself.
-    fn shape(&self, kind: &str) -> Result<Option<Shape>, Damage> {
-        let drawn = |stroke: Option<Stroke>| Ok::<_, Damage>(stroke.map(Shape::Line));
+    fn shape(&self, kind: &str) -> Result<Option<EntityShape>, DxfDamage> {
+        let drawn = |stroke: Option<Stroke>| Ok::<_, DxfDamage>(stroke.map(EntityShape::Line));
         let mirrored = self.is_mirrored()?;
         let own = |stroke: Option<Stroke>| drawn(stroke.map(|s| if mirrored { turned_over(&s) } else { s }));
         match kind {
@@ -252,19 +252,21 @@ impl Body<'_> {
             "ARC" => own(self.arc(false)?),
             "CIRCLE" => own(self.arc(true)?),
             "ELLIPSE" => drawn(self.ellipse()?),
-            "SPLINE" => Ok(Some(self.spline()?.map_or_else(|| Shape::Other(kind.to_owned()), Shape::Line))),
+            "SPLINE" => Ok(Some(
+                self.spline()?.map_or_else(|| EntityShape::Other(kind.to_owned()), EntityShape::Line),
+            )),
             "POINT" => {
                 let depth = self.number(39)?.abs().max(self.number(30)?.abs());
-                Ok(Some(Shape::Point { at: self.point(10)?, depth }))
+                Ok(Some(EntityShape::Point { at: self.point(10)?, depth }))
             }
-            "TEXT" | "ATTDEF" => Ok(Some(Shape::Text(words::line(&self.text(1))))),
+            "TEXT" | "ATTDEF" => Ok(Some(EntityShape::Text(words::line(&self.text(1))))),
             "INSERT" => {
                 let scale = |code: i32| self.one(code).map_or(Ok(1.0), Tag::number);
                 let at = self.point(10)?;
-                Ok(Some(Shape::Insert { block: self.text(2), at, scale: [scale(41)?, scale(42)?] }))
+                Ok(Some(EntityShape::Insert { block: self.text(2), at, scale: [scale(41)?, scale(42)?] }))
             }
             _ if SILENT.contains(&kind) => Ok(None),
-            _ => Ok(Some(Shape::Other(kind.to_owned()))),
+            _ => Ok(Some(EntityShape::Other(kind.to_owned()))),
         }
     }
 
@@ -283,7 +285,7 @@ fn turned_over(stroke: &Stroke) -> Stroke {
 }
 
 /// The blocks in their order, and what stands outside of them.
-pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), Damage> {
+pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), DxfDamage> {
     let (mut blocks, mut outside) = (Vec::new(), Block::default());
     let mut inside: Option<Block> = None;
     let mut count = 0;
@@ -293,8 +295,8 @@ pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), Damage> {
     let mut drawn = true;
     for (k, &start) in starts.iter().enumerate() {
         let end = starts.get(k + 1).copied().unwrap_or(tags.len());
-        let (head, body) = (&tags[start], Body(&tags[start + 1..end]));
-        let mut found: Vec<((i32, String), usize, Shape)> = Vec::new();
+        let (head, body) = (&tags[start], EntityTags(&tags[start + 1..end]));
+        let mut found: Vec<((i32, String), usize, EntityShape)> = Vec::new();
         match head.value.trim() {
             "SECTION" => drawn = matches!(body.text(2).as_str(), "BLOCKS" | "ENTITIES"),
             "ENDSEC" | "EOF" => drawn = true,
@@ -303,7 +305,7 @@ pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), Damage> {
                 blocks.extend(inside.take());
                 inside = Some(Block { name: body.text(2), line: head.line, entities: Vec::new() });
                 if blocks.len() > MOST_BLOCKS {
-                    return Err(Damage::Many { what: "blocks", count: blocks.len(), most: MOST_BLOCKS });
+                    return Err(DxfDamage::Many { what: "blocks", count: blocks.len(), most: MOST_BLOCKS });
                 }
             }
             "ENDBLK" => blocks.extend(inside.take()),
@@ -327,9 +329,9 @@ pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), Damage> {
                 if let Some(poly) = poly.take() {
                     let stroke = Stroke::polyline(&poly.points, poly.closed).filter(|_| !poly.mesh);
                     let shape = match stroke {
-                        Some(s) if poly.mirrored => Some(Shape::Line(turned_over(&s))),
-                        Some(s) => Some(Shape::Line(s)),
-                        None if poly.mesh => Some(Shape::Other("POLYLINE of a mesh".to_owned())),
+                        Some(s) if poly.mirrored => Some(EntityShape::Line(turned_over(&s))),
+                        Some(s) => Some(EntityShape::Line(s)),
+                        None if poly.mesh => Some(EntityShape::Other("POLYLINE of a mesh".to_owned())),
                         None => None,
                     };
                     found.extend(shape.map(|shape| (poly.layer, poly.line, shape)));
@@ -337,7 +339,7 @@ pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), Damage> {
             }
             "MTEXT" => {
                 found.extend(
-                    body.lines().into_iter().map(|text| (body.layer(), head.line, Shape::Text(text))),
+                    body.lines().into_iter().map(|text| (body.layer(), head.line, EntityShape::Text(text))),
                 );
             }
             kind => found.extend(body.shape(kind)?.map(|shape| (body.layer(), head.line, shape))),
@@ -345,7 +347,7 @@ pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), Damage> {
         for ((layer, layer_name), line, shape) in found {
             count += 1;
             if count > MOST_ENTITIES {
-                return Err(Damage::Many { what: "entities", count, most: MOST_ENTITIES });
+                return Err(DxfDamage::Many { what: "entities", count, most: MOST_ENTITIES });
             }
             let entity = Entity { layer, layer_name, line, shape };
             inside.as_mut().unwrap_or(&mut outside).entities.push(entity);
@@ -365,18 +367,21 @@ impl Block {
     /// The value of the first text that begins with that word and a colon, whatever its layer.
     pub(super) fn value(&self, word: &str) -> Option<&str> {
         self.entities.iter().find_map(|e| match &e.shape {
-            Shape::Text(text) => {
+            EntityShape::Text(text) => {
                 let (key, value) = text.split_once(':')?;
                 key.trim().eq_ignore_ascii_case(word).then(|| value.trim())
             }
-            Shape::Line(_) | Shape::Point { .. } | Shape::Insert { .. } | Shape::Other(_) => None,
+            EntityShape::Line(_)
+            | EntityShape::Point { .. }
+            | EntityShape::Insert { .. }
+            | EntityShape::Other(_) => None,
         })
     }
 
     /// The lines on a layer that have length, with their places in the file.
     pub(super) fn lines(&self, layer: i32) -> impl Iterator<Item = (usize, &Stroke)> {
         self.entities.iter().filter(move |e| e.layer == layer).filter_map(|e| match &e.shape {
-            Shape::Line(stroke) => Some((e.line, stroke)),
+            EntityShape::Line(stroke) => Some((e.line, stroke)),
             _ => None,
         })
     }
@@ -385,9 +390,9 @@ impl Block {
     /// point.
     pub(super) fn points(&self, layers: &[i32]) -> impl Iterator<Item = (Point2, f64)> {
         self.entities.iter().filter(move |e| layers.contains(&e.layer)).filter_map(|e| match &e.shape {
-            Shape::Point { at, depth } => Some((*at, *depth)),
-            Shape::Insert { at, .. } => Some((*at, 0.0)),
-            Shape::Text(_) | Shape::Line(_) | Shape::Other(_) => None,
+            EntityShape::Point { at, depth } => Some((*at, *depth)),
+            EntityShape::Insert { at, .. } => Some((*at, 0.0)),
+            EntityShape::Text(_) | EntityShape::Line(_) | EntityShape::Other(_) => None,
         })
     }
 }

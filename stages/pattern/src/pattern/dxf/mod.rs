@@ -19,8 +19,8 @@ mod words;
 use super::copies::{MOST_COPIES, copies};
 use super::unit::{DrawingUnit, worn};
 use super::{faults, seams};
-use damage::Damage;
-use entities::{Block, Shape, blocks};
+use damage::DxfDamage;
+use entities::{Block, EntityShape, blocks};
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::Remarks;
 use toile_core::prelude::*;
@@ -71,10 +71,12 @@ impl DxfPattern {
         self.named()?;
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
         let mut told = Remarks::default();
-        let refused = |all: Vec<Damage>| faults::refused(&self.file, all.iter().map(Damage::fault).collect());
+        let refused =
+            |all: Vec<DxfDamage>| faults::refused(&self.file, all.iter().map(DxfDamage::fault).collect());
         let pieces = pieces_of(&bytes, &self.size, self.unit, &mut told).map_err(refused)?;
-        let unsewable =
-            |what: String, remedy: &str| refused(vec![Damage::Unsewable { what, remedy: remedy.to_owned() }]);
+        let unsewable = |what: String, remedy: &str| {
+            refused(vec![DxfDamage::Unsewable { what, remedy: remedy.to_owned() }])
+        };
         seams::sewn((super::stem(&self.file), pieces), &self.seams, told, unsewable, cx)
     }
 
@@ -131,20 +133,20 @@ fn pieces_of(
     size: &str,
     unit: DrawingUnit,
     told: &mut Remarks,
-) -> Result<Vec<Piece>, Vec<Damage>> {
+) -> Result<Vec<Piece>, Vec<DxfDamage>> {
     let one = |damage| vec![damage];
     let tags = tags::tags(bytes, told).map_err(one)?;
     let (blocks, outside) = blocks(&tags).map_err(one)?;
     let drawn = drawn(&blocks, size);
     if drawn.is_empty() {
-        return Err(one(Damage::NoPieces));
+        return Err(one(DxfDamage::NoPieces));
     }
     let size = size_of(size, &drawn, &outside, told).map_err(one)?;
     let is_chosen = |d: &&Drawn<'_>| d.size.is_empty() || d.size.eq_ignore_ascii_case(&size);
     let chosen: Vec<&Drawn<'_>> = drawn.iter().filter(is_chosen).collect();
     other_sizes_alone(&drawn, &chosen, &size, told);
     let taken = units::unit(&tags, &outside, &chosen, unit, told).map_err(one)?;
-    let (mut out, mut faults): (Vec<Piece>, Vec<Damage>) = (Vec::new(), Vec::new());
+    let (mut out, mut faults): (Vec<Piece>, Vec<DxfDamage>) = (Vec::new(), Vec::new());
     let mut count: BTreeMap<&str, usize> = BTreeMap::new();
     for Drawn { block, name: own, .. } in &chosen {
         let again = count.entry(own).or_default();
@@ -167,22 +169,27 @@ fn pieces_of(
             Err(damage) => faults.push(damage),
         }
         if out.len() > MOST_PIECES {
-            return Err(one(Damage::Many { what: "pieces", count: out.len(), most: MOST_PIECES }));
+            return Err(one(DxfDamage::Many { what: "pieces", count: out.len(), most: MOST_PIECES }));
         }
     }
     if out.is_empty() && faults.is_empty() {
-        faults.push(Damage::NoPieces);
+        faults.push(DxfDamage::NoPieces);
     }
     if !faults.is_empty() {
         return Err(faults);
     }
     left_out(&blocks, &outside, &chosen, told);
-    worn(&out, &taken).map_err(|m| one(Damage::Size { what: m.what, remedy: m.remedy }))?;
+    worn(&out, &taken).map_err(|m| one(DxfDamage::Size { what: m.what, remedy: m.remedy }))?;
     Ok(out)
 }
 
 /// The size that is read.
-fn size_of(asked: &str, drawn: &[Drawn<'_>], outside: &Block, told: &mut Remarks) -> Result<String, Damage> {
+fn size_of(
+    asked: &str,
+    drawn: &[Drawn<'_>],
+    outside: &Block,
+    told: &mut Remarks,
+) -> Result<String, DxfDamage> {
     let mut known: Vec<String> = Vec::new();
     for d in drawn {
         if !d.size.is_empty() && !known.contains(&d.size) {
@@ -191,7 +198,7 @@ fn size_of(asked: &str, drawn: &[Drawn<'_>], outside: &Block, told: &mut Remarks
     }
     let is = |size: &str| known.iter().find(|k| k.eq_ignore_ascii_case(size.trim())).cloned();
     if !asked.trim().is_empty() {
-        return is(asked).ok_or_else(|| Damage::NoSize { size: asked.trim().to_owned(), known });
+        return is(asked).ok_or_else(|| DxfDamage::NoSize { size: asked.trim().to_owned(), known });
     }
     let sample = outside.value("Sample Size").and_then(is);
     let chosen = sample.or_else(|| known.first().cloned()).unwrap_or_default();
@@ -222,12 +229,15 @@ fn left_out(blocks: &[Block], outside: &Block, chosen: &[&Drawn<'_>], told: &mut
         let mut kinds: BTreeMap<String, (usize, usize)> = BTreeMap::new();
         for e in &d.block.entities {
             let kind = match &e.shape {
-                Shape::Other(kind) => kind.clone(),
-                Shape::Line(_) if !known(e.layer) => format!("line on layer \"{}\"", e.layer_name),
-                Shape::Insert { block, .. } if !matches!(e.layer, 4 | 13 | 80..=83) => {
+                EntityShape::Other(kind) => kind.clone(),
+                EntityShape::Line(_) if !known(e.layer) => format!("line on layer \"{}\"", e.layer_name),
+                EntityShape::Insert { block, .. } if !matches!(e.layer, 4 | 13 | 80..=83) => {
                     format!("block \"{block}\"")
                 }
-                Shape::Line(_) | Shape::Text(_) | Shape::Point { .. } | Shape::Insert { .. } => continue,
+                EntityShape::Line(_)
+                | EntityShape::Text(_)
+                | EntityShape::Point { .. }
+                | EntityShape::Insert { .. } => continue,
             };
             kinds.entry(kind).or_insert((0, e.line)).0 += 1;
         }
@@ -250,7 +260,7 @@ fn left_out(blocks: &[Block], outside: &Block, chosen: &[&Drawn<'_>], told: &mut
         told.warnings.push(format!("left out: {}{more}", out[..out.len().min(MOST_TOLD)].join(", ")));
     }
     for e in &outside.entities {
-        if let Shape::Insert { block, scale, .. } = &e.shape
+        if let EntityShape::Insert { block, scale, .. } = &e.shape
             && chosen.iter().any(|d| d.block.name == *block)
             && scale.iter().any(|s| (s.abs() - 1.0).abs() > 1e-6)
         {

@@ -11,15 +11,15 @@ use super::super::chain::{HAIR, JOINT, chained};
 use super::super::marks::{hole, notched};
 use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
 use super::super::unfold::{Fold, distinct, image_word, open_ring};
-use super::damage::Damage;
+use super::damage::DxfDamage;
 use super::entities::{Block, Stroke};
 use crate::mesh::crossing::first_crossing;
 use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// The piece of a block; `unit` is the length of the file's unit in metres.
-pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Remarks) -> Result<Piece, Damage> {
-    let at = Place { block, name, unit };
+pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Remarks) -> Result<Piece, DxfDamage> {
+    let at = NamedBlock { block, name, unit };
     let mut sides = at.boundary(told)?;
     let grain = at.line(7).next();
     // The grain turned up.
@@ -78,13 +78,13 @@ pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Remarks) ->
 }
 
 /// A block with its name, for errors, and its unit.
-struct Place<'a> {
+struct NamedBlock<'a> {
     block: &'a Block,
     name: &'a str,
     unit: f64,
 }
 
-impl Place<'_> {
+impl NamedBlock<'_> {
     /// A line in metres, without what is shorter than a hair is wide.
     fn scaled(&self, stroke: &Stroke) -> Side {
         let to = |p: Point2| p * self.unit;
@@ -115,7 +115,7 @@ impl Place<'_> {
     }
 
     /// Cut-outs, not repeating their first points.
-    fn holes(&self, up: impl Fn(Point2) -> Point2) -> Result<Vec<Vec<Point2>>, Damage> {
+    fn holes(&self, up: impl Fn(Point2) -> Point2) -> Result<Vec<Vec<Point2>>, DxfDamage> {
         let mut out = Vec::new();
         for (line, stroke) in self.block.lines(11) {
             let mut points = self.scaled(stroke).points();
@@ -134,16 +134,16 @@ impl Place<'_> {
         Ok(out)
     }
 
-    fn fault(&self, what: String) -> Damage {
-        Damage::Piece { piece: self.name.to_owned(), line: self.block.line, what }
+    fn fault(&self, what: String) -> DxfDamage {
+        DxfDamage::Piece { piece: self.name.to_owned(), line: self.block.line, what }
     }
 
-    fn mirror(&self) -> Damage {
-        Damage::Mirror { piece: self.name.to_owned(), line: self.block.line }
+    fn mirror(&self) -> DxfDamage {
+        DxfDamage::Mirror { piece: self.name.to_owned(), line: self.block.line }
     }
 
     /// The boundary, closed, its sides in order.
-    fn boundary(&self, told: &mut Remarks) -> Result<Vec<Side>, Damage> {
+    fn boundary(&self, told: &mut Remarks) -> Result<Vec<Side>, DxfDamage> {
         if self.block.lines(14).next().is_some()
             && let Ok(sides) = self.around(14, &mut Remarks::default())
         {
@@ -156,7 +156,7 @@ impl Place<'_> {
         self.around(1, told)
     }
 
-    fn around(&self, layer: i32, told: &mut Remarks) -> Result<Vec<Side>, Damage> {
+    fn around(&self, layer: i32, told: &mut Remarks) -> Result<Vec<Side>, DxfDamage> {
         let mut rest: Vec<Side> = Vec::new();
         let mut closed: Vec<(f64, usize, Side)> = Vec::new();
         for (line, stroke) in self.block.lines(layer) {
@@ -191,7 +191,7 @@ impl Place<'_> {
         if rest.is_empty() {
             return Err(self.fault("it has no boundary".into()));
         }
-        let sides = chained(rest, self.name, told).map_err(|gap| Damage::Open {
+        let sides = chained(rest, self.name, told).map_err(|gap| DxfDamage::Open {
             piece: self.name.to_owned(),
             line: self.block.line,
             gap_mm: gap.wide * 1e3,
@@ -242,7 +242,7 @@ impl Place<'_> {
         fine.unwrap_or_else(|| stroke.clone())
     }
 
-    fn simple(&self, sides: &[Side], turn: [f64; 2]) -> Result<(), Damage> {
+    fn simple(&self, sides: &[Side], turn: [f64; 2]) -> Result<(), DxfDamage> {
         let points = points(sides);
         let n = points.len() as u32;
         if n < 3 || polygon_area(&points).abs() < 1e-7 {
@@ -254,6 +254,6 @@ impl Place<'_> {
         // Back to how the file has it.
         let (x, y) = (turn[0] * p.x + turn[1] * p.y, turn[0] * p.y - turn[1] * p.x);
         let (piece, line) = (self.name.to_owned(), self.block.line);
-        Err(Damage::Crosses { piece, line, x: x / self.unit, y: y / self.unit })
+        Err(DxfDamage::Crosses { piece, line, x: x / self.unit, y: y / self.unit })
     }
 }

@@ -3,7 +3,7 @@
 //! Cost: linear. Limits: text form alone (the binary form is refused by name); 32 MB.
 //! [`super::decode`] finds the letters.
 
-use super::damage::Damage;
+use super::damage::DxfDamage;
 use super::{decode, words};
 use toile_core::Remarks;
 
@@ -20,19 +20,19 @@ pub(super) struct Tag {
 
 impl Tag {
     /// The value as a finite number.
-    pub(super) fn number(&self) -> Result<f64, Damage> {
+    pub(super) fn number(&self) -> Result<f64, DxfDamage> {
         let number = self.value.trim().parse::<f64>().ok().filter(|n| n.abs() <= 1e7);
-        number.ok_or_else(|| Damage::Number { value: short(&self.value), line: self.line + 1 })
+        number.ok_or_else(|| DxfDamage::Number { value: short(&self.value), line: self.line + 1 })
     }
 }
 
 /// The pairs of a file.
-pub(super) fn tags(bytes: &[u8], told: &mut Remarks) -> Result<Vec<Tag>, Damage> {
+pub(super) fn tags(bytes: &[u8], told: &mut Remarks) -> Result<Vec<Tag>, DxfDamage> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
-        return Err(Damage::Binary);
+        return Err(DxfDamage::Binary);
     }
     if bytes.len() > MOST_BYTES {
-        return Err(Damage::Large { bytes: bytes.len(), most: MOST_BYTES });
+        return Err(DxfDamage::Large { bytes: bytes.len(), most: MOST_BYTES });
     }
     let text = decode::text(bytes, told);
     let mut lines = text.lines().enumerate();
@@ -45,15 +45,15 @@ pub(super) fn tags(bytes: &[u8], told: &mut Remarks) -> Result<Vec<Tag>, Damage>
         let Ok(number) = code.trim().parse::<i32>() else {
             // What stands behind the end of the file is nobody's.
             let ended = out.last().is_some_and(|t: &Tag| t.code == 0 && t.value == "EOF");
-            return if ended { Ok(out) } else { Err(Damage::Code { value: short(code), line }) };
+            return if ended { Ok(out) } else { Err(DxfDamage::Code { value: short(code), line }) };
         };
-        let Some((_, value)) = lines.next() else { return Err(Damage::Early { line }) };
+        let Some((_, value)) = lines.next() else { return Err(DxfDamage::Early { line }) };
         let value = value.trim_end_matches('\r');
         // Names of blocks and layers; texts are read where they are formed.
         let value = if matches!(number, 2 | 8) { words::letters(value) } else { value.to_owned() };
         out.push(Tag { code: number, value, line });
     }
-    if out.is_empty() { Err(Damage::Early { line: 1 }) } else { Ok(out) }
+    if out.is_empty() { Err(DxfDamage::Early { line: 1 }) } else { Ok(out) }
 }
 
 /// The number that a variable of the header has.

@@ -96,14 +96,14 @@ fn tank() -> Dxf {
 
 /// The pieces and what is told of them, warnings first; of several faults the first. The unit is
 /// not looked at.
-fn read(bytes: &[u8], size: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
+fn read(bytes: &[u8], size: &str) -> Result<(Vec<Piece>, Vec<String>), DxfDamage> {
     let mut told = Remarks::default();
     let pieces = pieces_of(bytes, size, DrawingUnit::Millimetres, &mut told);
     pieces.map(|p| (p, [told.warnings, told.notes].concat())).map_err(|mut all| all.remove(0))
 }
 
 /// The same in the unit that the file says.
-fn in_own_unit(bytes: &[u8]) -> Result<(Vec<Piece>, Remarks), Damage> {
+fn in_own_unit(bytes: &[u8]) -> Result<(Vec<Piece>, Remarks), DxfDamage> {
     let mut told = Remarks::default();
     let pieces = pieces_of(bytes, "", DrawingUnit::Auto, &mut told);
     pieces.map(|p| (p, told)).map_err(|mut all| all.remove(0))
@@ -230,7 +230,7 @@ fn pairs_are_cut_as_often_as_the_quantity_says() {
 
 /// A rectangle of 300 by 200 whose right end is a half circle, drawn by a change of the usual
 /// boundary.
-fn rounded(change: &dyn Fn(&mut Dxf)) -> Result<(Vec<Piece>, Vec<String>), Damage> {
+fn rounded(change: &dyn Fn(&mut Dxf)) -> Result<(Vec<Piece>, Vec<String>), DxfDamage> {
     let mut d = Dxf::default();
     d.block("TAB", "M", None);
     change(&mut d);

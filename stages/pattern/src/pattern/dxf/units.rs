@@ -6,7 +6,7 @@
 
 use super::super::unit::{By, DrawingUnit, Taken};
 use super::Drawn;
-use super::damage::Damage;
+use super::damage::DxfDamage;
 use super::entities::Block;
 use super::tags::{Tag, short, variable};
 use toile_core::Remarks;
@@ -23,9 +23,9 @@ pub(super) fn unit(
     pieces: &[&Drawn<'_>],
     asked: DrawingUnit,
     told: &mut Remarks,
-) -> Result<Taken, Damage> {
+) -> Result<Taken, DxfDamage> {
     let taken = |unit: DrawingUnit, fact: String, by: By| {
-        unit.metres().map(|metres| Taken { metres, fact, by }).ok_or(Damage::NoPieces)
+        unit.metres().map(|metres| Taken { metres, fact, by }).ok_or(DxfDamage::NoPieces)
     };
     if asked != DrawingUnit::Auto {
         return taken(
@@ -38,7 +38,7 @@ pub(super) fn unit(
     let by_word = match word {
         Some(word) if word.eq_ignore_ascii_case("ENGLISH") => Some((DrawingUnit::Inches, "ENGLISH")),
         Some(word) if word.eq_ignore_ascii_case("METRIC") => Some((DrawingUnit::Millimetres, "METRIC")),
-        Some(word) => return Err(Damage::Units { word: short(word) }),
+        Some(word) => return Err(DxfDamage::Units { word: short(word) }),
         None => None,
     };
     if let Some((unit, word)) = by_word {

@@ -1,13 +1,13 @@
 //! What may be wrong with a GarmentCode file beyond repair: one list, each with its place and what
 //! to do.
 
-use super::super::faults::Fault;
+use super::super::faults::PatternFault;
 use thiserror::Error;
 use toile_core::{ErrorCode, nearest};
 
 /// Why a file is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub(super) enum Damage {
+pub(super) enum SpecificationDamage {
     #[error("it is empty")]
     Empty,
     #[error("it is text of 16 bits a letter (UTF-16)")]
@@ -88,93 +88,95 @@ pub(super) enum Damage {
     Unsewable { what: String, remedy: &'static str },
 }
 
-impl Damage {
+impl SpecificationDamage {
     /// What the user may do about it.
     pub(super) fn remedy(&self) -> String {
         match self {
-            Damage::Empty => "give the file that GarmentCode wrote, a `_specification.json`".into(),
-            Damage::Wide => "save it as UTF-8".into(),
-            Damage::Comment { .. } => "JSON has no comments: take it out".into(),
-            Damage::Syntax { .. } => "write the file again with the program that made it".into(),
-            Damage::NoNumber { .. } => "give the number that is meant; JSON knows no such word".into(),
-            Damage::Large { .. } | Damage::Many { .. } => "no garment needs so many: is it the file that is meant?".into(),
-            Damage::Type { wanted, .. } => format!("write {wanted} there, as GarmentCode does"),
-            Damage::Missing { .. } => {
+            SpecificationDamage::Empty => "give the file that GarmentCode wrote, a `_specification.json`".into(),
+            SpecificationDamage::Wide => "save it as UTF-8".into(),
+            SpecificationDamage::Comment { .. } => "JSON has no comments: take it out".into(),
+            SpecificationDamage::Syntax { .. } => "write the file again with the program that made it".into(),
+            SpecificationDamage::NoNumber { .. } => "give the number that is meant; JSON knows no such word".into(),
+            SpecificationDamage::Large { .. } | SpecificationDamage::Many { .. } => "no garment needs so many: is it the file that is meant?".into(),
+            SpecificationDamage::Type { wanted, .. } => format!("write {wanted} there, as GarmentCode does"),
+            SpecificationDamage::Missing { .. } => {
                 "GarmentCode writes `pattern` with `panels` and `stitches`, and `properties`; is it a `_specification.json`?".into()
             }
-            Damage::NoPanels => "draft the garment again; an empty pattern cannot be sewn".into(),
-            Damage::Doubled { .. } => "give each panel a name of its own".into(),
-            Damage::MissingPanel { .. } => "add the panel, or take its name out of `panel_order`".into(),
-            Damage::Units { .. } => "write 100 for centimetres".into(),
-            Damage::Coordinates { .. } => "GarmentCode writes \"relative\"".into(),
-            Damage::Far { .. } => "correct the number, or `units_in_meter`".into(),
-            Damage::FewEdges { .. } => "draw the panel as a closed loop of edges".into(),
-            Damage::NoVertex { .. } => "vertices are counted from 0".into(),
-            Damage::Curvature { .. } => {
+            SpecificationDamage::NoPanels => "draft the garment again; an empty pattern cannot be sewn".into(),
+            SpecificationDamage::Doubled { .. } => "give each panel a name of its own".into(),
+            SpecificationDamage::MissingPanel { .. } => "add the panel, or take its name out of `panel_order`".into(),
+            SpecificationDamage::Units { .. } => "write 100 for centimetres".into(),
+            SpecificationDamage::Coordinates { .. } => "GarmentCode writes \"relative\"".into(),
+            SpecificationDamage::Far { .. } => "correct the number, or `units_in_meter`".into(),
+            SpecificationDamage::FewEdges { .. } => "draw the panel as a closed loop of edges".into(),
+            SpecificationDamage::NoVertex { .. } => "vertices are counted from 0".into(),
+            SpecificationDamage::Curvature { .. } => {
                 "`quadratic` has 1 control point, `cubic` 2, `circle` a radius and two flags".into()
             }
-            Damage::NoLength { .. } => "draw the edge, or take its stitch out".into(),
-            Damage::Overshoot { .. } => {
+            SpecificationDamage::NoLength { .. } => "draw the edge, or take its stitch out".into(),
+            SpecificationDamage::Overshoot { .. } => {
                 "correct the control point; where it is meant in the panel's coordinates, write \"absolute\" as `curvature_coords`".into()
             }
-            Damage::Radius { .. } => "give a radius above 0; the flags say to which side the arc turns".into(),
-            Damage::Open { .. } => "close the loop: gaps of up to 5 mm are closed by themselves".into(),
-            Damage::Crosses { .. } | Damage::NoArea { .. } => "draw the panel so that its edges meet at corners alone".into(),
-            Damage::Sides { .. } => "a stitch names two edges".into(),
-            Damage::Word { .. } => "the only word is \"right_wrong\"".into(),
-            Damage::NoPanel { panel, known, .. } => match nearest(panel, known.iter().map(String::as_str)) {
+            SpecificationDamage::Radius { .. } => "give a radius above 0; the flags say to which side the arc turns".into(),
+            SpecificationDamage::Open { .. } => "close the loop: gaps of up to 5 mm are closed by themselves".into(),
+            SpecificationDamage::Crosses { .. } | SpecificationDamage::NoArea { .. } => "draw the panel so that its edges meet at corners alone".into(),
+            SpecificationDamage::Sides { .. } => "a stitch names two edges".into(),
+            SpecificationDamage::Word { .. } => "the only word is \"right_wrong\"".into(),
+            SpecificationDamage::NoPanel { panel, known, .. } => match nearest(panel, known.iter().map(String::as_str)) {
                 Some(near) => format!("add the panel, or take the stitch out; or did you mean \"{near}\"?"),
                 None => "add the panel, or take the stitch out".into(),
             },
-            Damage::NoEdge { .. } => "edges are counted from 0".into(),
-            Damage::Itself { .. } => "cut the edge in two and sew its halves".into(),
-            Damage::Contradiction { .. } => "keep the stitch that is meant".into(),
-            Damage::Opposed { .. } => "take \"right_wrong\" out of one of them, or give it to both".into(),
-            Damage::Turned { .. } => "correct the panel's `rotation`, or the stitches".into(),
-            Damage::Shared { .. } => "keep the stitch that is meant".into(),
-            Damage::Twice { .. } => "keep the one that is meant".into(),
-            Damage::Unsewable { remedy, .. } => (*remedy).into(),
+            SpecificationDamage::NoEdge { .. } => "edges are counted from 0".into(),
+            SpecificationDamage::Itself { .. } => "cut the edge in two and sew its halves".into(),
+            SpecificationDamage::Contradiction { .. } => "keep the stitch that is meant".into(),
+            SpecificationDamage::Opposed { .. } => "take \"right_wrong\" out of one of them, or give it to both".into(),
+            SpecificationDamage::Turned { .. } => "correct the panel's `rotation`, or the stitches".into(),
+            SpecificationDamage::Shared { .. } => "keep the stitch that is meant".into(),
+            SpecificationDamage::Twice { .. } => "keep the one that is meant".into(),
+            SpecificationDamage::Unsewable { remedy, .. } => (*remedy).into(),
         }
     }
 
     /// As a fault of the file.
-    pub(super) fn fault(&self) -> Fault {
+    pub(super) fn fault(&self) -> PatternFault {
         let code = match self {
-            Damage::Crosses { .. } | Damage::NoArea { .. } => ErrorCode::DegenerateTriangles,
-            Damage::Empty
-            | Damage::Wide
-            | Damage::Comment { .. }
-            | Damage::Syntax { .. }
-            | Damage::NoNumber { .. }
-            | Damage::Large { .. }
-            | Damage::Many { .. }
-            | Damage::Missing { .. }
-            | Damage::Type { .. }
-            | Damage::NoPanels
-            | Damage::Doubled { .. }
-            | Damage::MissingPanel { .. }
-            | Damage::Units { .. }
-            | Damage::Coordinates { .. }
-            | Damage::Far { .. }
-            | Damage::FewEdges { .. }
-            | Damage::NoVertex { .. }
-            | Damage::Curvature { .. }
-            | Damage::NoLength { .. }
-            | Damage::Overshoot { .. }
-            | Damage::Radius { .. }
-            | Damage::Open { .. }
-            | Damage::Sides { .. }
-            | Damage::Word { .. }
-            | Damage::NoPanel { .. }
-            | Damage::NoEdge { .. }
-            | Damage::Itself { .. }
-            | Damage::Contradiction { .. }
-            | Damage::Opposed { .. }
-            | Damage::Turned { .. }
-            | Damage::Shared { .. }
-            | Damage::Twice { .. }
-            | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
+            SpecificationDamage::Crosses { .. } | SpecificationDamage::NoArea { .. } => {
+                ErrorCode::DegenerateTriangles
+            }
+            SpecificationDamage::Empty
+            | SpecificationDamage::Wide
+            | SpecificationDamage::Comment { .. }
+            | SpecificationDamage::Syntax { .. }
+            | SpecificationDamage::NoNumber { .. }
+            | SpecificationDamage::Large { .. }
+            | SpecificationDamage::Many { .. }
+            | SpecificationDamage::Missing { .. }
+            | SpecificationDamage::Type { .. }
+            | SpecificationDamage::NoPanels
+            | SpecificationDamage::Doubled { .. }
+            | SpecificationDamage::MissingPanel { .. }
+            | SpecificationDamage::Units { .. }
+            | SpecificationDamage::Coordinates { .. }
+            | SpecificationDamage::Far { .. }
+            | SpecificationDamage::FewEdges { .. }
+            | SpecificationDamage::NoVertex { .. }
+            | SpecificationDamage::Curvature { .. }
+            | SpecificationDamage::NoLength { .. }
+            | SpecificationDamage::Overshoot { .. }
+            | SpecificationDamage::Radius { .. }
+            | SpecificationDamage::Open { .. }
+            | SpecificationDamage::Sides { .. }
+            | SpecificationDamage::Word { .. }
+            | SpecificationDamage::NoPanel { .. }
+            | SpecificationDamage::NoEdge { .. }
+            | SpecificationDamage::Itself { .. }
+            | SpecificationDamage::Contradiction { .. }
+            | SpecificationDamage::Opposed { .. }
+            | SpecificationDamage::Turned { .. }
+            | SpecificationDamage::Shared { .. }
+            | SpecificationDamage::Twice { .. }
+            | SpecificationDamage::Unsewable { .. } => ErrorCode::PatternLoading,
         };
-        Fault { code, param: "file", what: self.to_string(), remedy: Some(self.remedy()) }
+        PatternFault { code, param: "file", what: self.to_string(), remedy: Some(self.remedy()) }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Cost: linear in the text. Limits: [`MOST_VALUES`] values; nesting as deep as `serde_json` goes.
 
-use super::damage::Damage;
+use super::damage::SpecificationDamage;
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::collections::BTreeSet;
 
@@ -25,21 +25,21 @@ pub(super) enum Json {
 
 impl Json {
     /// Reads a text.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, Damage> {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Self, SpecificationDamage> {
         if bytes.len() > MOST_BYTES {
-            return Err(Damage::Large { bytes: bytes.len(), most: MOST_BYTES });
+            return Err(SpecificationDamage::Large { bytes: bytes.len(), most: MOST_BYTES });
         }
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         if bytes.iter().all(u8::is_ascii_whitespace) {
-            return Err(Damage::Empty);
+            return Err(SpecificationDamage::Empty);
         }
         // ASCII in 16 bits has a zero in every other byte.
         if bytes.iter().take(64).filter(|b| **b == 0).count() > bytes.len().min(64) / 4 {
-            return Err(Damage::Wide);
+            return Err(SpecificationDamage::Wide);
         }
         let commas = bytes.iter().filter(|b| **b == b',').count();
         if commas > MOST_VALUES {
-            return Err(Damage::Many {
+            return Err(SpecificationDamage::Many {
                 what: "values",
                 of: "the file".into(),
                 count: commas + 1,
@@ -51,13 +51,15 @@ impl Json {
     }
 
     /// Refuses a field that stands twice in an object; panels of one name are told by the reader.
-    fn each_once(&self, of: &str) -> Result<(), Damage> {
+    fn each_once(&self, of: &str) -> Result<(), SpecificationDamage> {
         match self {
             Json::Object(fields) => {
                 let mut seen = BTreeSet::new();
                 let twice = fields.iter().find(|(k, _)| !seen.insert(k)).filter(|_| of != "`panels`");
                 match twice {
-                    Some((field, _)) => Err(Damage::Twice { field: field.clone(), of: of.to_owned() }),
+                    Some((field, _)) => {
+                        Err(SpecificationDamage::Twice { field: field.clone(), of: of.to_owned() })
+                    }
                     None => fields.iter().try_for_each(|(k, v)| v.each_once(&format!("`{k}`"))),
                 }
             }
@@ -89,23 +91,23 @@ impl Json {
 
 /// Why a text is no JSON, with its place; numbers that Python writes and JSON does not know are
 /// told apart.
-fn syntax(bytes: &[u8], e: &serde_json::Error) -> Damage {
+fn syntax(bytes: &[u8], e: &serde_json::Error) -> SpecificationDamage {
     let (line, column) = (e.line(), e.column());
     let row = bytes.split(|b| *b == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
     // The fault may be told at the first letter of the word or behind it.
     let near = &row[column.saturating_sub(4).min(row.len())..(column + 9).min(row.len())];
     let strange = ["NaN", "Infinity"].into_iter().find(|w| near.windows(w.len()).any(|x| x == w.as_bytes()));
     if let Some(word) = strange {
-        return Damage::NoNumber { word, line, column };
+        return SpecificationDamage::NoNumber { word, line, column };
     }
     let before = &row[..column.min(row.len())];
     let at = [&b"//"[..], b"/*"].iter().find_map(|c| row.windows(2).position(|w| w == *c));
     if let Some(at) = at.filter(|at| *at < before.len() + 1 && !before[..*at].contains(&b'"')) {
-        return Damage::Comment { line, column: at + 1 };
+        return SpecificationDamage::Comment { line, column: at + 1 };
     }
     let text = e.to_string();
     let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what);
-    Damage::Syntax { what: what.to_owned(), line, column }
+    SpecificationDamage::Syntax { what: what.to_owned(), line, column }
 }
 
 impl<'de> Deserialize<'de> for Json {

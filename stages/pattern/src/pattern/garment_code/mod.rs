@@ -17,7 +17,7 @@ mod tests;
 mod units;
 
 use super::faults;
-use damage::Damage;
+use damage::SpecificationDamage;
 use json::Json;
 use panel::{Scale, made};
 use read::RawFile;
@@ -54,13 +54,15 @@ impl GarmentCode {
     pub fn run(&self, cx: &Context) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
         self.named()?;
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
-        let refused = |all: Vec<Damage>| faults::refused(&self.file, all.iter().map(Damage::fault).collect());
+        let refused = |all: Vec<SpecificationDamage>| {
+            faults::refused(&self.file, all.iter().map(SpecificationDamage::fault).collect())
+        };
         let (pattern, told) = pattern(&bytes, &super::stem(&self.file)).map_err(refused)?;
         super::tell(told, cx);
         cx.check()?;
-        let lowered = pattern
-            .lower()
-            .map_err(|e| refused(vec![Damage::Unsewable { what: e.to_string(), remedy: e.remedy() }]))?;
+        let lowered = pattern.lower().map_err(|e| {
+            refused(vec![SpecificationDamage::Unsewable { what: e.to_string(), remedy: e.remedy() }])
+        })?;
         super::tell(Remarks { notes: lowered.notes, warnings: lowered.warnings }, cx);
         let outlines = lowered.outlines.into_iter().map(|(name, o)| (name, Arc::new(o))).collect();
         Ok((pattern, Set(outlines), lowered.plan))
@@ -81,14 +83,14 @@ impl GarmentCode {
 /// The pattern of a file's bytes, and what was repaired.
 ///
 /// Errors: all that is wrong with the file, in its order.
-fn pattern(bytes: &[u8], name: &str) -> Result<(Pattern, Remarks), Vec<Damage>> {
+fn pattern(bytes: &[u8], name: &str) -> Result<(Pattern, Remarks), Vec<SpecificationDamage>> {
     let one = |damage| vec![damage];
     let json = Json::parse(bytes).map_err(one)?;
     let mut file = RawFile::of(&json).map_err(one)?;
     let mut faults = std::mem::take(&mut file.faults);
     let mut told = Remarks::default();
     // Without its unit the lengths of a file mean nothing.
-    if faults.iter().any(|f| matches!(f, Damage::Units { .. })) || file.panels.is_empty() {
+    if faults.iter().any(|f| matches!(f, SpecificationDamage::Units { .. })) || file.panels.is_empty() {
         return Err(faults);
     }
     let unit = match units::metres(&file, &mut told) {
@@ -116,6 +118,6 @@ fn pattern(bytes: &[u8], name: &str) -> Result<(Pattern, Remarks), Vec<Damage>> 
     let pattern =
         Pattern { name: name.to_owned(), pieces: pieces.into_iter().map(|m| m.piece).collect(), seams };
     let remedy = "draw the panel again; each edge needs length, and each loop area";
-    pattern.check().map_err(|what| one(Damage::Unsewable { what, remedy }))?;
+    pattern.check().map_err(|what| one(SpecificationDamage::Unsewable { what, remedy }))?;
     Ok((pattern, told))
 }

@@ -6,7 +6,7 @@
 //! `Rz Ry Rx (x, y, 0) + translation`. Limits: edges must stand in the file in the order of the
 //! loop; some may run against it.
 
-use super::damage::Damage;
+use super::damage::SpecificationDamage;
 use super::read::{RawCurve, RawEdge, RawPanel};
 use crate::mesh::crossing::first_crossing;
 use std::collections::{BTreeMap, BTreeSet};
@@ -63,9 +63,10 @@ pub(super) fn made(
     stitched: &BTreeSet<usize>,
     scale: Scale,
     told: &mut Remarks,
-) -> Result<Made, Vec<Damage>> {
+) -> Result<Made, Vec<SpecificationDamage>> {
     let links = chained(raw, stitched, scale.unit, told)?;
-    let faults: Vec<Damage> = links.iter().filter_map(|l| drawable(raw, l, scale).err()).collect();
+    let faults: Vec<SpecificationDamage> =
+        links.iter().filter_map(|l| drawable(raw, l, scale).err()).collect();
     if !faults.is_empty() {
         return Err(faults);
     }
@@ -77,7 +78,7 @@ pub(super) fn made(
     let points = simple(raw, &links, &outer, scale.unit).map_err(|damage| vec![damage])?;
     let area = polygon_area(&points);
     if area.abs() < LEAST_AREA {
-        return Err(vec![Damage::NoArea { panel: raw.name.clone() }]);
+        return Err(vec![SpecificationDamage::NoArea { panel: raw.name.clone() }]);
     }
     let inside_out = area < 0.0;
     let mut edges = vec![None; raw.edges.len()];
@@ -102,7 +103,7 @@ fn chained(
     stitched: &BTreeSet<usize>,
     unit: f64,
     told: &mut Remarks,
-) -> Result<Vec<Link>, Vec<Damage>> {
+) -> Result<Vec<Link>, Vec<SpecificationDamage>> {
     let ends = |e: &RawEdge| e.ends.map(|v| raw.vertices[v]);
     let (mut kept, mut faults) = (Vec::new(), Vec::new());
     for (i, e) in raw.edges.iter().enumerate() {
@@ -110,7 +111,7 @@ fn chained(
         match (b - a).norm() * unit > SPECK {
             true => kept.push(i),
             false if stitched.contains(&i) => {
-                faults.push(Damage::NoLength { panel: raw.name.clone(), edge: i });
+                faults.push(SpecificationDamage::NoLength { panel: raw.name.clone(), edge: i });
             }
             false => {
                 told.warnings.push(format!("edge {i} of panel \"{}\" has no length: left out", raw.name))
@@ -118,7 +119,7 @@ fn chained(
         }
     }
     if kept.len() < 2 {
-        faults.push(Damage::FewEdges { panel: raw.name.clone(), edges: kept.len() });
+        faults.push(SpecificationDamage::FewEdges { panel: raw.name.clone(), edges: kept.len() });
     }
     if !faults.is_empty() {
         return Err(faults);
@@ -145,7 +146,7 @@ fn chained(
         let shortest = gap(here.start, here.end).min(gap(next.start, next.end));
         if open > HAIR || open > HAIR_SHARE * shortest {
             let (panel, gap_mm) = (raw.name.clone(), open * 1e3);
-            faults.push(Damage::Open { panel, edge: here.edge, next: next.edge, gap_mm });
+            faults.push(SpecificationDamage::Open { panel, edge: here.edge, next: next.edge, gap_mm });
         } else if open > 0.0 {
             links[(k + 1) % n].start = here.end;
             let level = if open > SPECK { &mut told.warnings } else { &mut told.notes };
@@ -187,7 +188,7 @@ fn edge_names(raw: &RawPanel) -> Vec<String> {
 }
 
 /// A curve that a person may have meant.
-fn drawable(raw: &RawPanel, link: &Link, scale: Scale) -> Result<(), Damage> {
+fn drawable(raw: &RawPanel, link: &Link, scale: Scale) -> Result<(), SpecificationDamage> {
     let (panel, edge) = (raw.name.clone(), link.edge);
     let chord = (link.end - link.start).norm();
     let ends = raw.edges[link.edge].ends.map(|v| raw.vertices[v]);
@@ -202,11 +203,11 @@ fn drawable(raw: &RawPanel, link: &Link, scale: Scale) -> Result<(), Damage> {
         RawCurve::Quadratic(c) => farthest(c),
         RawCurve::Cubic(c) => farthest(c),
         RawCurve::Circle { radius, .. } if *radius <= 0.0 => {
-            return Err(Damage::Radius { panel, edge, radius: *radius });
+            return Err(SpecificationDamage::Radius { panel, edge, radius: *radius });
         }
         RawCurve::Circle { .. } => 0.0,
     };
-    if times > OVERSHOOT { Err(Damage::Overshoot { panel, edge, times }) } else { Ok(()) }
+    if times > OVERSHOOT { Err(SpecificationDamage::Overshoot { panel, edge, times }) } else { Ok(()) }
 }
 
 /// The curve of a link in the direction of the loop, metres.
@@ -240,14 +241,19 @@ fn curve(raw: &RawPanel, link: &Link, scale: Scale, told: &mut Remarks) -> EdgeC
 }
 
 /// The loop as points, none of whose segments meet but at their ends.
-fn simple(raw: &RawPanel, links: &[Link], outer: &PatternLoop, unit: f64) -> Result<Vec<Point2>, Damage> {
+fn simple(
+    raw: &RawPanel,
+    links: &[Link],
+    outer: &PatternLoop,
+    unit: f64,
+) -> Result<Vec<Point2>, SpecificationDamage> {
     let (points, starts) = outer.points();
     let n = points.len() as u32;
     let segments: Vec<[u32; 2]> = (0..n).map(|i| [i, (i + 1) % n]).collect();
     let Some(pair) = first_crossing(&points, &segments) else { return Ok(points) };
     let [edge, other] = pair.map(|s| links[starts.partition_point(|&c| c <= s) - 1].edge);
     let near = points[pair[1]] / unit;
-    Err(Damage::Crosses { panel: raw.name.clone(), edge, other, x: near.x, y: near.y })
+    Err(SpecificationDamage::Crosses { panel: raw.name.clone(), edge, other, x: near.x, y: near.y })
 }
 
 /// The loop seen from the other side: x mirrored, which makes a clockwise one counter-clockwise.

@@ -1,7 +1,7 @@
 //! The fields of a GarmentCode file, each of its type and within its bounds; what they mean is not
 //! looked at yet.
 
-use super::damage::Damage;
+use super::damage::SpecificationDamage;
 use super::json::Json;
 use std::collections::BTreeSet;
 use toile_core::prelude::*;
@@ -27,7 +27,7 @@ pub(super) struct RawFile {
     pub stitches: Vec<RawStitch>,
     /// What is wrong, in the order of the file; panels and stitches at fault are not among the
     /// others, nor stitches of such panels.
-    pub faults: Vec<Damage>,
+    pub faults: Vec<SpecificationDamage>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -60,32 +60,32 @@ pub(super) enum RawCurve {
 }
 
 /// An edge of a panel, both by their numbers.
-pub(super) type Side = (usize, usize);
+pub(super) type PanelEdge = (usize, usize);
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RawStitch {
     /// Its number in the file.
     pub number: usize,
-    pub sides: [Side; 2],
+    pub sides: [PanelEdge; 2],
     /// Whether start meets start.
     pub right_wrong: bool,
 }
 
 impl RawFile {
     /// Errors: what leaves nothing to look at.
-    pub(super) fn of(json: &Json) -> Result<Self, Damage> {
+    pub(super) fn of(json: &Json) -> Result<Self, SpecificationDamage> {
         let pattern = object(json, "pattern", "the file")?;
         let mut faults = Vec::new();
         let properties = json.field("properties").filter(|p| **p != Json::Null);
         let units = properties.and_then(|p| p.field("units_in_meter")).filter(|u| **u != Json::Null);
         let units = units.and_then(|u| kept(number(u, "`units_in_meter`"), &mut faults));
         let sound = |value: &f64| *value > 0.0 && *value <= FARTHEST;
-        faults.extend(units.filter(|u| !sound(u)).map(|value| Damage::Units { value }));
+        faults.extend(units.filter(|u| !sound(u)).map(|value| SpecificationDamage::Units { value }));
         let coordinates = match properties.and_then(|p| p.field("curvature_coords")) {
             None | Some(Json::Null) => Ok(false),
             Some(Json::Text(word)) if word == "relative" => Ok(false),
             Some(Json::Text(word)) if word == "absolute" => Ok(true),
-            Some(Json::Text(word)) => Err(Damage::Coordinates { word: short(word) }),
+            Some(Json::Text(word)) => Err(SpecificationDamage::Coordinates { word: short(word) }),
             Some(other) => Err(wrong("`curvature_coords`", other, "a text")),
         };
         let absolute = kept(coordinates, &mut faults).unwrap_or(false);
@@ -103,32 +103,37 @@ impl RawFile {
 }
 
 /// What was read; a fault goes to the others.
-fn kept<T>(read: Result<T, Damage>, faults: &mut Vec<Damage>) -> Option<T> {
+fn kept<T>(read: Result<T, SpecificationDamage>, faults: &mut Vec<SpecificationDamage>) -> Option<T> {
     read.map_err(|damage| faults.push(damage)).ok()
 }
 
 /// A panel that the file has.
-struct Known {
+struct KnownPanel {
     name: String,
     /// Its number among those without faults, and it; none where it has one.
     sound: Option<(usize, RawPanel)>,
 }
 
-fn sound_panels(known: Vec<Known>) -> Vec<RawPanel> {
+fn sound_panels(known: Vec<KnownPanel>) -> Vec<RawPanel> {
     known.into_iter().filter_map(|k| k.sound).map(|(_, panel)| panel).collect()
 }
 
-fn panels(pattern: &Json, faults: &mut Vec<Damage>) -> Result<Vec<Known>, Damage> {
-    let Json::Object(fields) = object(pattern, "panels", "`pattern`")? else { return Err(Damage::NoPanels) };
+fn panels(
+    pattern: &Json,
+    faults: &mut Vec<SpecificationDamage>,
+) -> Result<Vec<KnownPanel>, SpecificationDamage> {
+    let Json::Object(fields) = object(pattern, "panels", "`pattern`")? else {
+        return Err(SpecificationDamage::NoPanels);
+    };
     if fields.is_empty() {
-        return Err(Damage::NoPanels);
+        return Err(SpecificationDamage::NoPanels);
     }
     most("panels", "the file", fields.len(), MOST_PANELS)?;
     let mut names = BTreeSet::new();
     let (mut out, mut edges, mut vertices, mut count) = (Vec::new(), 0, 0, 0);
     for (name, value) in fields {
         if !names.insert(name) {
-            faults.push(Damage::Doubled { panel: short(name) });
+            faults.push(SpecificationDamage::Doubled { panel: short(name) });
             continue;
         }
         let sound = panel(name, value, faults).map(|panel| (count, panel));
@@ -138,27 +143,27 @@ fn panels(pattern: &Json, faults: &mut Vec<Damage>) -> Result<Vec<Known>, Damage
             most("edges", "the file", edges, MOST_EDGES)?;
             most("vertices", "the file", vertices, MOST_EDGES)?;
         }
-        out.push(Known { name: name.clone(), sound });
+        out.push(KnownPanel { name: name.clone(), sound });
     }
     Ok(out)
 }
 
 /// Every panel that the file's order of panels names is there.
-fn order(pattern: &Json, panels: &[Known], faults: &mut Vec<Damage>) {
+fn order(pattern: &Json, panels: &[KnownPanel], faults: &mut Vec<SpecificationDamage>) {
     let Some(Json::List(order)) = pattern.field("panel_order") else { return };
     let known: BTreeSet<&str> = panels.iter().map(|p| p.name.as_str()).collect();
     let missing = order.iter().filter_map(|n| match n {
         Json::Text(name) if !known.contains(name.as_str()) => Some(name),
         _ => None,
     });
-    faults.extend(missing.map(|panel| Damage::MissingPanel { panel: short(panel) }));
+    faults.extend(missing.map(|panel| SpecificationDamage::MissingPanel { panel: short(panel) }));
 }
 
 /// The panel, where nothing of it is at fault.
-fn panel(name: &str, value: &Json, faults: &mut Vec<Damage>) -> Option<RawPanel> {
+fn panel(name: &str, value: &Json, faults: &mut Vec<SpecificationDamage>) -> Option<RawPanel> {
     let before = faults.len();
     let at = format!("panel \"{}\"", short(name));
-    let three = |field: &str| -> Result<Vector3, Damage> {
+    let three = |field: &str| -> Result<Vector3, SpecificationDamage> {
         let [x, y, z] = numbers(part(value, field, &at)?, &format!("`{field}` of {at}"))?;
         Ok(Vector3::new(x, y, z))
     };
@@ -172,7 +177,7 @@ fn panel(name: &str, value: &Json, faults: &mut Vec<Damage>) -> Option<RawPanel>
     let points = vertices.iter().enumerate().filter_map(|v| kept(vertex(v), faults)).collect();
     let edges = kept(listed("edges"), faults)?;
     if edges.len() < 2 {
-        faults.push(Damage::FewEdges { panel: short(name), edges: edges.len() });
+        faults.push(SpecificationDamage::FewEdges { panel: short(name), edges: edges.len() });
     }
     let edges = edges.iter().enumerate().filter_map(|(i, e)| kept(edge(i, e, name, vertices.len()), faults));
     let edges = edges.collect();
@@ -190,12 +195,12 @@ fn panel(name: &str, value: &Json, faults: &mut Vec<Damage>) -> Option<RawPanel>
     })
 }
 
-fn edge(i: usize, value: &Json, panel: &str, count: usize) -> Result<RawEdge, Damage> {
+fn edge(i: usize, value: &Json, panel: &str, count: usize) -> Result<RawEdge, SpecificationDamage> {
     let at = format!("edge {i} of panel \"{}\"", short(panel));
     let ends: [f64; 2] = numbers(part(value, "endpoints", &at)?, &format!("`endpoints` of {at}"))?;
     let vertex = |n: f64| match n >= 0.0 && n.fract() == 0.0 && n < count as f64 {
         true => Ok(n as usize),
-        false => Err(Damage::NoVertex { panel: short(panel), edge: i, vertex: n, count }),
+        false => Err(SpecificationDamage::NoVertex { panel: short(panel), edge: i, vertex: n, count }),
     };
     let curve = match value.field("curvature") {
         None | Some(Json::Null) => RawCurve::Line,
@@ -208,7 +213,7 @@ fn edge(i: usize, value: &Json, panel: &str, count: usize) -> Result<RawEdge, Da
     })
 }
 
-fn curve(i: usize, value: &Json, panel: &str, at: &str) -> Result<RawCurve, Damage> {
+fn curve(i: usize, value: &Json, panel: &str, at: &str) -> Result<RawCurve, SpecificationDamage> {
     let of = format!("curvature of {at}");
     if let Json::List(_) = value {
         return Ok(RawCurve::Quadratic([point(value, &of)?]));
@@ -229,12 +234,22 @@ fn curve(i: usize, value: &Json, panel: &str, at: &str) -> Result<RawCurve, Dama
             large: flag(large)?,
             right: flag(right)?,
         }),
-        _ => Err(Damage::Curvature { panel: short(panel), edge: i, kind: short(kind), params: params.len() }),
+        _ => Err(SpecificationDamage::Curvature {
+            panel: short(panel),
+            edge: i,
+            kind: short(kind),
+            params: params.len(),
+        }),
     }
 }
 
 /// The stitch; none where it is at fault, or a panel of it is.
-fn stitch(i: usize, value: &Json, panels: &[Known], faults: &mut Vec<Damage>) -> Option<RawStitch> {
+fn stitch(
+    i: usize,
+    value: &Json,
+    panels: &[KnownPanel],
+    faults: &mut Vec<SpecificationDamage>,
+) -> Option<RawStitch> {
     let (parts, right_wrong) = kept(parts(i, value), faults)?;
     // Both sides are looked at, whatever the first one is.
     let [a, b] = parts.map(|side| kept(self::side(i, side, panels), faults));
@@ -243,46 +258,52 @@ fn stitch(i: usize, value: &Json, panels: &[Known], faults: &mut Vec<Damage>) ->
         let (panel, edge) = sides[0];
         let name = panels.iter().find(|p| p.sound.as_ref().is_some_and(|(k, _)| *k == panel));
         let panel = name.map_or_else(String::new, |p| short(&p.name));
-        faults.push(Damage::Itself { stitch: i, panel, edge });
+        faults.push(SpecificationDamage::Itself { stitch: i, panel, edge });
         return None;
     }
     Some(RawStitch { number: i, sides, right_wrong })
 }
 
 /// The two sides of a stitch, and whether its word stands with them.
-fn parts(i: usize, value: &Json) -> Result<([&Json; 2], bool), Damage> {
+fn parts(i: usize, value: &Json) -> Result<([&Json; 2], bool), SpecificationDamage> {
     let Json::List(parts) = value else { return Err(wrong(&format!("stitch {i}"), value, "a list")) };
     let sides = parts.iter().filter(|p| !matches!(p, Json::Text(_))).count();
-    let [a, b, words @ ..] = parts.as_slice() else { return Err(Damage::Sides { stitch: i, sides }) };
+    let [a, b, words @ ..] = parts.as_slice() else {
+        return Err(SpecificationDamage::Sides { stitch: i, sides });
+    };
     if sides != 2 {
-        return Err(Damage::Sides { stitch: i, sides });
+        return Err(SpecificationDamage::Sides { stitch: i, sides });
     }
     let mut right_wrong = false;
     for word in words {
         match word {
             Json::Text(word) if word == "right_wrong" => right_wrong = true,
-            Json::Text(word) => return Err(Damage::Word { stitch: i, word: short(word) }),
-            _ => return Err(Damage::Sides { stitch: i, sides: parts.len() }),
+            Json::Text(word) => return Err(SpecificationDamage::Word { stitch: i, word: short(word) }),
+            _ => return Err(SpecificationDamage::Sides { stitch: i, sides: parts.len() }),
         }
     }
     Ok(([a, b], right_wrong))
 }
 
 /// The edge of a stitch's side; none where its panel is at fault itself.
-fn side(i: usize, value: &Json, panels: &[Known]) -> Result<Option<Side>, Damage> {
+fn side(i: usize, value: &Json, panels: &[KnownPanel]) -> Result<Option<PanelEdge>, SpecificationDamage> {
     let at = format!("a side of stitch {i}");
     let Json::Text(name) = part(value, "panel", &at)? else {
         return Err(wrong(&format!("`panel` of {at}"), value.field("panel").unwrap_or(value), "a text"));
     };
     let known = || panels.iter().map(|p| p.name.clone()).collect();
     let panel = panels.iter().find(|p| p.name == *name);
-    let panel = panel.ok_or_else(|| Damage::NoPanel { stitch: i, panel: short(name), known: known() })?;
+    let panel = panel.ok_or_else(|| SpecificationDamage::NoPanel {
+        stitch: i,
+        panel: short(name),
+        known: known(),
+    })?;
     let edge = number(part(value, "edge", &at)?, &format!("`edge` of {at}"))?;
     let Some((k, panel)) = &panel.sound else { return Ok(None) };
     let count = panel.edges.len();
     match edge >= 0.0 && edge.fract() == 0.0 && edge < count as f64 {
         true => Ok(Some((*k, edge as usize))),
-        false => Err(Damage::NoEdge { stitch: i, panel: short(name), edge, count }),
+        false => Err(SpecificationDamage::NoEdge { stitch: i, panel: short(name), edge, count }),
     }
 }
 
@@ -294,30 +315,30 @@ fn text(value: &Json, field: &str) -> Option<String> {
     }
 }
 
-fn part<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a Json, Damage> {
+fn part<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a Json, SpecificationDamage> {
     match value {
-        Json::Object(_) => {
-            value.field(field).ok_or_else(|| Damage::Missing { field: field.into(), of: of.into() })
-        }
+        Json::Object(_) => value
+            .field(field)
+            .ok_or_else(|| SpecificationDamage::Missing { field: field.into(), of: of.into() }),
         other => Err(wrong(of, other, "an object")),
     }
 }
 
-fn object<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a Json, Damage> {
+fn object<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a Json, SpecificationDamage> {
     match part(value, field, of)? {
         found @ Json::Object(_) => Ok(found),
         other => Err(wrong(&format!("`{field}` of {of}"), other, "an object")),
     }
 }
 
-fn list<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a [Json], Damage> {
+fn list<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a [Json], SpecificationDamage> {
     match part(value, field, of)? {
         Json::List(found) => Ok(found),
         other => Err(wrong(&format!("`{field}` of {of}"), other, "a list")),
     }
 }
 
-fn number(value: &Json, at: &str) -> Result<f64, Damage> {
+fn number(value: &Json, at: &str) -> Result<f64, SpecificationDamage> {
     match value {
         Json::Number(n) => Ok(*n),
         other => Err(wrong(at, other, "a number")),
@@ -325,11 +346,11 @@ fn number(value: &Json, at: &str) -> Result<f64, Damage> {
 }
 
 /// A list of so many numbers, none of them beyond what a garment reaches.
-fn numbers<const N: usize>(value: &Json, at: &str) -> Result<[f64; N], Damage> {
+fn numbers<const N: usize>(value: &Json, at: &str) -> Result<[f64; N], SpecificationDamage> {
     let Json::List(found) = value else { return Err(wrong(at, value, "a list")) };
     if found.len() != N {
         let count = format!("{at} has {} numbers, {N} are wanted", found.len());
-        return Err(Damage::Unsewable {
+        return Err(SpecificationDamage::Unsewable {
             what: count,
             remedy: "points in the plane have 2 numbers, in space 3",
         });
@@ -341,26 +362,26 @@ fn numbers<const N: usize>(value: &Json, at: &str) -> Result<[f64; N], Damage> {
     Ok(out)
 }
 
-fn within(value: f64, at: &str) -> Result<f64, Damage> {
+fn within(value: f64, at: &str) -> Result<f64, SpecificationDamage> {
     match value.abs() <= FARTHEST {
         true => Ok(value),
-        false => Err(Damage::Far { at: at.to_owned(), value }),
+        false => Err(SpecificationDamage::Far { at: at.to_owned(), value }),
     }
 }
 
-fn point(value: &Json, at: &str) -> Result<Point2, Damage> {
+fn point(value: &Json, at: &str) -> Result<Point2, SpecificationDamage> {
     numbers::<2>(value, at).map(|[x, y]| Point2::new(x, y))
 }
 
-fn most(what: &'static str, of: &str, count: usize, most: usize) -> Result<(), Damage> {
+fn most(what: &'static str, of: &str, count: usize, most: usize) -> Result<(), SpecificationDamage> {
     match count <= most {
         true => Ok(()),
-        false => Err(Damage::Many { what, of: of.to_owned(), count, most }),
+        false => Err(SpecificationDamage::Many { what, of: of.to_owned(), count, most }),
     }
 }
 
-fn wrong(at: &str, found: &Json, wanted: &'static str) -> Damage {
-    Damage::Type { at: at.to_owned(), found: found.words(), wanted }
+fn wrong(at: &str, found: &Json, wanted: &'static str) -> SpecificationDamage {
+    SpecificationDamage::Type { at: at.to_owned(), found: found.words(), wanted }
 }
 
 /// A name as it stands in a message.

@@ -12,7 +12,7 @@
 //! In 55 files of GarmentCode and its forerunner none of the 1519 stitches is one of these.
 //! Panels that stand inside out are turned over before (`inside_out`). Cost: stitches squared.
 
-use super::damage::Damage;
+use super::damage::SpecificationDamage;
 use super::inside_out::{inside_out, turned_over};
 use super::panel::Made;
 use super::read::{RawPanel, RawStitch};
@@ -36,7 +36,7 @@ pub(super) fn seams(
     panels: &[RawPanel],
     made: &mut [Made],
     told: &mut Remarks,
-) -> Result<Vec<PatternSeam>, Damage> {
+) -> Result<Vec<PatternSeam>, SpecificationDamage> {
     let mut once = once(stitches, panels, told, &mut Vec::new());
     let over = inside_out(&once, made);
     for &p in &over {
@@ -68,7 +68,7 @@ pub(super) fn seams(
 }
 
 /// Edges that more than one stitch sews, and stitches that contradict each other.
-pub(super) fn doubled(stitches: &[RawStitch], panels: &[RawPanel]) -> Vec<Damage> {
+pub(super) fn doubled(stitches: &[RawStitch], panels: &[RawPanel]) -> Vec<SpecificationDamage> {
     let mut faults = Vec::new();
     once(stitches, panels, &mut Remarks::default(), &mut faults);
     faults
@@ -79,7 +79,7 @@ fn once<'a>(
     stitches: &'a [RawStitch],
     panels: &[RawPanel],
     told: &mut Remarks,
-    faults: &mut Vec<Damage>,
+    faults: &mut Vec<SpecificationDamage>,
 ) -> Vec<Stitch<'a>> {
     let mut seen: BTreeMap<[(usize, usize); 2], usize> = BTreeMap::new();
     let mut sewn: BTreeMap<(usize, usize), usize> = BTreeMap::new();
@@ -93,7 +93,7 @@ fn once<'a>(
                 for side in key {
                     if let Some(stitch) = sewn.insert(side, number) {
                         let (panel, edge) = (panels[side.0].name.clone(), side.1);
-                        faults.push(Damage::Shared { panel, edge, stitch, other: number });
+                        faults.push(SpecificationDamage::Shared { panel, edge, stitch, other: number });
                     }
                 }
                 seen.insert(key, out.len());
@@ -104,7 +104,9 @@ fn once<'a>(
                 words(raw, panels),
                 first.number
             )),
-            Some(first) => faults.push(Damage::Contradiction { stitch: first.number, other: number }),
+            Some(first) => {
+                faults.push(SpecificationDamage::Contradiction { stitch: first.number, other: number })
+            }
         }
     }
     out
@@ -154,7 +156,11 @@ fn is_dart(s: &RawStitch, made: &[Made]) -> bool {
 ///
 /// Errors: two mirror images that run in opposite ways, of which the placed edges do not tell the
 /// wrong one.
-fn wrong_ways(stitches: &[Stitch<'_>], panels: &[RawPanel], made: &[Made]) -> Result<Vec<bool>, Damage> {
+fn wrong_ways(
+    stitches: &[Stitch<'_>],
+    panels: &[RawPanel],
+    made: &[Made],
+) -> Result<Vec<bool>, SpecificationDamage> {
     let leans: Vec<f64> = stitches.iter().map(|s| leaning(s, made)).collect();
     let images: Vec<Option<(usize, bool)>> = (0..stitches.len()).map(|i| image(i, stitches, made)).collect();
     let wrong = |i: usize| {
@@ -167,7 +173,7 @@ fn wrong_ways(stitches: &[Stitch<'_>], panels: &[RawPanel], made: &[Made]) -> Re
             Some((j, false)) => match (leans[i], leans[j]) {
                 (own, other) if own > CLEAR && other < -CLEAR => Ok(true),
                 (own, other) if own < -CLEAR && other > CLEAR => Ok(false),
-                _ => Err(Damage::Opposed {
+                _ => Err(SpecificationDamage::Opposed {
                     stitch: s.number.min(stitches[j].number),
                     other: s.number.max(stitches[j].number),
                 }),
@@ -179,12 +185,18 @@ fn wrong_ways(stitches: &[Stitch<'_>], panels: &[RawPanel], made: &[Made]) -> Re
 }
 
 /// No panel has so many stitches that run the wrong way that it is the panel which lies wrong.
-fn unturned(stitches: &[Stitch<'_>], turned: &[bool], panels: &[RawPanel]) -> Result<(), Damage> {
+fn unturned(
+    stitches: &[Stitch<'_>],
+    turned: &[bool],
+    panels: &[RawPanel],
+) -> Result<(), SpecificationDamage> {
     let wrong = || stitches.iter().zip(turned).filter(|(_, t)| **t).map(|(s, _)| s);
     let at = |p: usize| wrong().filter(|s| s.raw.sides.iter().any(|(q, _)| *q == p)).count();
     let most = (0..panels.len()).map(|p| (at(p), p)).max_by_key(|(count, p)| (*count, std::cmp::Reverse(*p)));
     match most {
-        Some((count, p)) if count >= MANY => Err(Damage::Turned { panel: panels[p].name.clone(), count }),
+        Some((count, p)) if count >= MANY => {
+            Err(SpecificationDamage::Turned { panel: panels[p].name.clone(), count })
+        }
         _ => Ok(()),
     }
 }

@@ -53,7 +53,7 @@ fn tube() -> Value {
 }
 
 /// The pattern and what is told of it, warnings first; of several faults the first.
-fn read(file: &Value) -> Result<(Pattern, Vec<String>), Damage> {
+fn read(file: &Value) -> Result<(Pattern, Vec<String>), SpecificationDamage> {
     let read = pattern(file.to_string().as_bytes(), "test").map_err(|mut all| all.remove(0));
     read.map(|(pattern, told)| (pattern, [told.warnings, told.notes].concat()))
 }

@@ -5,7 +5,7 @@
 //! of the usual units is taken with which one is; that is told. Limit: a file for a doll that says
 //! so is taken for a wrong one.
 
-use super::damage::Damage;
+use super::damage::SpecificationDamage;
 use super::read::RawFile;
 use toile_core::Remarks;
 use toile_core::artifact::Point2;
@@ -21,7 +21,7 @@ const USUAL: [f64; 5] = [100.0, 300.0, 1000.0, 1000.0 / 25.4, 1.0];
 const DEFAULT: f64 = 100.0;
 
 /// Metres in a unit.
-pub(super) fn metres(file: &RawFile, told: &mut Remarks) -> Result<f64, Damage> {
+pub(super) fn metres(file: &RawFile, told: &mut Remarks) -> Result<f64, SpecificationDamage> {
     let size = file.panels.iter().map(|p| extent(&p.vertices)).fold(0.0, f64::max);
     let fits = |units: f64| (PLAUSIBLE.0..=PLAUSIBLE.1).contains(&(size / units));
     let said = file.units.unwrap_or(DEFAULT);
@@ -42,7 +42,7 @@ pub(super) fn metres(file: &RawFile, told: &mut Remarks) -> Result<f64, Damage> 
             ));
             Ok(1.0 / units)
         }
-        None => Err(Damage::Unsewable {
+        None => Err(SpecificationDamage::Unsewable {
             what: format!("the largest panel is {size} units long, which is no garment in any usual unit"),
             remedy: "write 100 as `units_in_meter` for centimetres",
         }),
@@ -50,13 +50,13 @@ pub(super) fn metres(file: &RawFile, told: &mut Remarks) -> Result<f64, Damage> 
 }
 
 /// One panel alone is far too long: a vertex of it stands wrong, not the unit.
-fn stray(file: &RawFile, units: f64) -> Result<(), Damage> {
+fn stray(file: &RawFile, units: f64) -> Result<(), SpecificationDamage> {
     let mut sizes: Vec<(f64, &str)> =
         file.panels.iter().map(|p| (extent(&p.vertices) / units, p.name.as_str())).collect();
     sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
     let [(largest, panel), (next, _), ..] = sizes[..] else { return Ok(()) };
     if largest > PLAUSIBLE.1 && (LIKELY.0..=LIKELY.1).contains(&next) {
-        return Err(Damage::Unsewable {
+        return Err(SpecificationDamage::Unsewable {
             what: format!("panel \"{panel}\" is {largest:.2} m long, the others at most {next:.2} m"),
             remedy: "correct its vertices",
         });

@@ -5,7 +5,7 @@
 //! elements after clones are followed, groups 100 deep; of style sheets only rules of a single
 //! class or id that hide.
 
-use super::damage::Damage;
+use super::damage::SvgDamage;
 use super::path::{Line, ellipse, path, polyline, rectangle};
 use super::role::{Role, is_generated, of_group, role};
 use super::source::{place, short};
@@ -46,7 +46,7 @@ pub(super) struct Name {
 
 /// An element with its lines.
 #[derive(Debug, Clone)]
-pub(super) struct Shape<'t> {
+pub(super) struct DrawnShape<'t> {
     pub node: Node<'t, 't>,
     pub name: Option<Name>,
     pub role: Option<Role>,
@@ -67,7 +67,7 @@ pub(super) struct Words {
 pub(super) struct Drawing<'t> {
     /// The first one is the whole file.
     pub groups: Vec<Group>,
-    pub shapes: Vec<Shape<'t>>,
+    pub shapes: Vec<DrawnShape<'t>>,
     pub texts: Vec<Words>,
     /// Pictures of pixels.
     pub pictures: usize,
@@ -93,7 +93,7 @@ struct Walk<'t> {
 }
 
 /// What is drawn below the root; `unit` is the length of the file's unit in metres.
-pub(super) fn drawing<'t>(root: Node<'t, 't>, unit: f64) -> Result<Drawing<'t>, Damage> {
+pub(super) fn drawing<'t>(root: Node<'t, 't>, unit: f64) -> Result<Drawing<'t>, SvgDamage> {
     let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n)));
     let styles = root.descendants().filter(|n| n.has_tag_name_local("style"));
     let hidden = styles.flat_map(|n| hidden_by(&inner_text(n))).collect();
@@ -109,14 +109,14 @@ impl Drawing<'_> {
     /// Leaves out the arrows of dimensions, and the marks that lead straight to an end of one in
     /// their group.
     fn without_dimensions(&mut self) {
-        let is = |s: &&Shape<'_>| s.role == Some(Role::Dimension);
-        let ends = |s: &Shape<'_>| s.lines.iter().flat_map(|l| [l.start, l.end()]).collect::<Vec<_>>();
+        let is = |s: &&DrawnShape<'_>| s.role == Some(Role::Dimension);
+        let ends = |s: &DrawnShape<'_>| s.lines.iter().flat_map(|l| [l.start, l.end()]).collect::<Vec<_>>();
         let arrows: Vec<(usize, Vec<Point2>)> =
             self.shapes.iter().filter(is).map(|s| (s.group, ends(s))).collect();
         if arrows.is_empty() {
             return;
         }
-        let leads = |s: &Shape<'_>| {
+        let leads = |s: &DrawnShape<'_>| {
             let straight = matches!(&s.lines[..], [l] if matches!(l.parts[..], [(EdgeCurve::Line, _)]));
             let meets = |p: &Point2| {
                 arrows
@@ -215,7 +215,7 @@ fn names<'t>(node: Node<'t, 't>) -> Vec<&'t str> {
 }
 
 impl<'t> Walk<'t> {
-    fn children(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), Damage> {
+    fn children(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), SvgDamage> {
         node.children().filter(Node::is_element).try_for_each(|child| self.element(child, state))
     }
 
@@ -229,13 +229,13 @@ impl<'t> Walk<'t> {
         style || attribute || by_class || by_id
     }
 
-    fn element(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), Damage> {
+    fn element(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), SvgDamage> {
         self.visited += 1;
         if self.visited > MOST_ELEMENTS {
-            return Err(Damage::Many { what: "elements", most: MOST_ELEMENTS });
+            return Err(SvgDamage::Many { what: "elements", most: MOST_ELEMENTS });
         }
         if state.depth > MOST_DEPTH {
-            return Err(Damage::Many { what: "groups within each other", most: MOST_DEPTH });
+            return Err(SvgDamage::Many { what: "groups within each other", most: MOST_DEPTH });
         }
         if self.is_hidden(node) {
             return Ok(());
@@ -268,7 +268,7 @@ impl<'t> Walk<'t> {
         }
     }
 
-    fn group(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), Damage> {
+    fn group(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), SvgDamage> {
         let id = node.attribute("id").unwrap_or("");
         let part =
             id.strip_prefix("fs-stack-").and_then(|rest| rest.split_once("-part-")).map(|(_, part)| {
@@ -292,12 +292,12 @@ impl<'t> Walk<'t> {
     }
 
     /// What a `use` shows: the element that it names, moved.
-    fn cloned(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), Damage> {
+    fn cloned(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), SvgDamage> {
         let target =
             local(node, "href").and_then(|h| h.trim().strip_prefix('#')).and_then(|id| self.ids.get(id));
         let Some(&target) = target else { return Ok(()) };
         if node.ancestors().any(|a| a == target) || state.depth >= MOST_DEPTH {
-            return Err(Damage::Loop { place: place(node) });
+            return Err(SvgDamage::Loop { place: place(node) });
         }
         let [x, y] = [length(node, "x", 0.0)?, length(node, "y", 0.0)?];
         let to = state.to * Affine::translate((x.unwrap_or(0.0), y.unwrap_or(0.0)));
@@ -316,7 +316,7 @@ impl<'t> Walk<'t> {
         }
     }
 
-    fn shape(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), Damage> {
+    fn shape(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), SvgDamage> {
         let own = role(names(node)).or(state.role);
         if own == Some(Role::Nothing) {
             return Ok(());
@@ -341,16 +341,16 @@ impl<'t> Walk<'t> {
         let near = |p: &Point2| p.coords.amax() <= FAR;
         // Farther than ten kilometres is a damaged transform: nothing of a garment.
         if lines.iter().all(|l| near(&l.start) && l.parts.iter().all(|(_, end)| near(end))) {
-            self.drawing.shapes.push(Shape { node, name: name(node), role, group: state.group, lines });
+            self.drawing.shapes.push(DrawnShape { node, name: name(node), role, group: state.group, lines });
         }
     }
 }
 
 /// A number that an attribute gives as a length in the file's units; `least` bounds it. None where
 /// it depends on the page.
-fn length(node: Node<'_, '_>, attribute: &'static str, least: f64) -> Result<Option<f64>, Damage> {
+fn length(node: Node<'_, '_>, attribute: &'static str, least: f64) -> Result<Option<f64>, SvgDamage> {
     let Some(value) = node.attribute(attribute) else { return Ok(Some(0.0)) };
-    let bad = || Damage::Attribute { place: place(node), attribute, value: short(value) };
+    let bad = || SvgDamage::Attribute { place: place(node), attribute, value: short(value) };
     let length = value.trim().parse::<Length>().map_err(|_| bad())?;
     let signed = ["x", "y", "cx", "cy", "x1", "y1", "x2", "y2"].contains(&attribute);
     let sound = |n: &f64| n.is_finite() && n.abs() <= 1e9 && (signed || *n >= least);
@@ -360,15 +360,15 @@ fn length(node: Node<'_, '_>, attribute: &'static str, least: f64) -> Result<Opt
     }
 }
 
-fn transform(node: Node<'_, '_>, value: &str) -> Result<Affine, Damage> {
-    let bad = || Damage::Attribute { place: place(node), attribute: "transform", value: short(value) };
+fn transform(node: Node<'_, '_>, value: &str) -> Result<Affine, SvgDamage> {
+    let bad = || SvgDamage::Attribute { place: place(node), attribute: "transform", value: short(value) };
     let t = value.parse::<Transform>().map_err(|_| bad())?;
     let all = [t.a, t.b, t.c, t.d, t.e, t.f];
     all.iter().all(|n| n.is_finite() && n.abs() <= 1e9).then(|| Affine::new(all)).ok_or_else(bad)
 }
 
 /// Where the inside of a nested `svg` lies.
-fn nested(node: Node<'_, '_>) -> Result<Affine, Damage> {
+fn nested(node: Node<'_, '_>) -> Result<Affine, SvgDamage> {
     let number = |name| length(node, name, 0.0).map(|n| n.unwrap_or(0.0));
     let (x, y, w, h) = (number("x")?, number("y")?, number("width")?, number("height")?);
     let view = node.attribute("viewBox").and_then(|v| v.parse::<ViewBox>().ok());
@@ -381,13 +381,13 @@ fn nested(node: Node<'_, '_>) -> Result<Affine, Damage> {
 }
 
 /// The lines of a shape in its own units; none where it has no size.
-fn lines(node: Node<'_, '_>) -> Result<Option<Vec<Line>>, Damage> {
-    let bad = |attribute: &'static str| Damage::Attribute {
+fn lines(node: Node<'_, '_>) -> Result<Option<Vec<Line>>, SvgDamage> {
+    let bad = |attribute: &'static str| SvgDamage::Attribute {
         place: place(node),
         attribute,
         value: short(node.attribute(attribute).unwrap_or("")),
     };
-    let all = |names: &[&'static str]| -> Result<Option<Vec<f64>>, Damage> {
+    let all = |names: &[&'static str]| -> Result<Option<Vec<f64>>, SvgDamage> {
         names.iter().map(|name| length(node, name, 0.0)).collect()
     };
     let (made, attribute) = match node.tag_name().name() {

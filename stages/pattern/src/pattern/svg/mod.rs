@@ -19,7 +19,7 @@ mod units;
 
 use super::unit::{By, DrawingUnit, longest, worn};
 use super::{faults, seams};
-use damage::Damage;
+use damage::SvgDamage;
 use toile_core::Remarks;
 use toile_core::prelude::*;
 
@@ -61,10 +61,12 @@ impl SvgPattern {
         self.named()?;
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
         let mut told = Remarks::default();
-        let refused = |all: Vec<Damage>| faults::refused(&self.file, all.iter().map(Damage::fault).collect());
+        let refused =
+            |all: Vec<SvgDamage>| faults::refused(&self.file, all.iter().map(SvgDamage::fault).collect());
         let pieces = pieces_of(&bytes, self.unit, &mut told).map_err(refused)?;
-        let unsewable =
-            |what: String, remedy: &str| refused(vec![Damage::Unsewable { what, remedy: remedy.to_owned() }]);
+        let unsewable = |what: String, remedy: &str| {
+            refused(vec![SvgDamage::Unsewable { what, remedy: remedy.to_owned() }])
+        };
         seams::sewn((super::stem(&self.file), pieces), &self.seams, told, unsewable, cx)
     }
 
@@ -81,7 +83,7 @@ impl SvgPattern {
 /// The pieces of a file, each as often as it is cut.
 ///
 /// Errors: all that is wrong with them.
-fn pieces_of(bytes: &[u8], unit: DrawingUnit, told: &mut Remarks) -> Result<Vec<Piece>, Vec<Damage>> {
+fn pieces_of(bytes: &[u8], unit: DrawingUnit, told: &mut Remarks) -> Result<Vec<Piece>, Vec<SvgDamage>> {
     let one = |damage| vec![damage];
     let text = source::text(bytes).map_err(one)?;
     let tree = source::tree(text).map_err(one)?;
@@ -94,7 +96,7 @@ fn pieces_of(bytes: &[u8], unit: DrawingUnit, told: &mut Remarks) -> Result<Vec<
     // FreeSewing says which pairs are mirrored; a person who writes "cut 2" means a pair.
     let by_word = root.has_attribute("freesewing");
     let pieces = pieces::pieces(&drawing, by_word, told)?;
-    worn(&pieces, &taken).map_err(|m| one(Damage::Size { what: m.what, remedy: m.remedy }))?;
+    worn(&pieces, &taken).map_err(|m| one(SvgDamage::Size { what: m.what, remedy: m.remedy }))?;
     match taken.by {
         By::Guess => told.warnings.push(format!(
             "{}, and the largest piece {} long; say the drawing's unit where that is wrong, such as `--set pattern.unit=Millimetres`",

@@ -41,32 +41,32 @@ pub(super) fn outermost<'d, 't>(all: Vec<Outlined<'d, 't>>, is_sheet: bool) -> C
     let begins_on = |i: usize, j: usize| all[j].area > all[i].area && all[j].has(all[i].polygon[0]);
     let alone = |on: &dyn Fn(usize, usize) -> bool, i: usize| (0..all.len()).all(|j| j == i || !on(i, j));
     let several = (0..all.len()).filter(|&i| alone(&begins_on, i)).count() > 1;
-    let kinds: Vec<Kind> = match is_sheet || several {
+    let kinds: Vec<NestedKind> = match is_sheet || several {
         true => sheet(&all),
-        false => {
-            (0..all.len()).map(|i| if alone(&begins_on, i) { Kind::Piece } else { Kind::Within }).collect()
-        }
+        false => (0..all.len())
+            .map(|i| if alone(&begins_on, i) { NestedKind::Piece } else { NestedKind::Within })
+            .collect(),
     };
     let mut chosen = Chosen { pieces: Vec::new(), within: Vec::new(), frames: Vec::new() };
     for (outline, kind) in all.into_iter().zip(kinds) {
         match kind {
-            Kind::Piece => chosen.pieces.push(outline),
-            Kind::Within => chosen.within.push(outline),
-            Kind::Frame => chosen.frames.push(outline),
+            NestedKind::Piece => chosen.pieces.push(outline),
+            NestedKind::Within => chosen.within.push(outline),
+            NestedKind::Frame => chosen.frames.push(outline),
         }
     }
     chosen
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum NestedKind {
     Piece,
     Within,
     Frame,
 }
 
 /// What the lines of a sheet of several pieces are.
-fn sheet(all: &[Outlined<'_, '_>]) -> Vec<Kind> {
+fn sheet(all: &[Outlined<'_, '_>]) -> Vec<NestedKind> {
     let boxes: Vec<(Point2, Point2)> = all.iter().map(|o| bounds(&o.polygon)).collect();
     let most = (POINTS / all.len().max(1)).clamp(EACH.0, EACH.1);
     let thin: Vec<Vec<Point2>> = all.iter().map(|o| thinned(&o.polygon, most)).collect();
@@ -90,9 +90,9 @@ fn sheet(all: &[Outlined<'_, '_>]) -> Vec<Kind> {
             && others().filter(|&i| !inner(i, Some(j))).count() > 1
     });
     let kind = |i: usize| match (Some(i) == frame, inner(i, frame)) {
-        (true, _) => Kind::Frame,
-        (false, true) => Kind::Within,
-        (false, false) => Kind::Piece,
+        (true, _) => NestedKind::Frame,
+        (false, true) => NestedKind::Within,
+        (false, false) => NestedKind::Piece,
     };
     (0..all.len()).map(kind).collect()
 }

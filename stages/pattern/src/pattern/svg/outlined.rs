@@ -1,14 +1,14 @@
 //! A closed line of a drawing that may be the outline of a piece.
 
 use super::super::side::Side;
-use super::drawing::Shape;
+use super::drawing::DrawnShape;
 use super::role::Role;
 use crate::mesh::predicates::inside;
 use toile_core::prelude::*;
 
 /// An outline with what it is drawn by.
 pub(super) struct Outlined<'d, 't> {
-    pub shape: &'d Shape<'t>,
+    pub shape: &'d DrawnShape<'t>,
     /// Its sides, or the open lines that are to be its sides.
     pub(super) sides: Vec<Side>,
     pub(super) closed: bool,

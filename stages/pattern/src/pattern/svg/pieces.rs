@@ -12,8 +12,8 @@ use super::super::copies::{MOST_COPIES, copies};
 use super::super::marks::{hole, notched};
 use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
 use super::super::unfold::{Fold, distinct, image_word, open_ring};
-use super::damage::{Damage, Place};
-use super::drawing::{Drawing, Name, Shape};
+use super::damage::{SvgDamage, SvgPlace};
+use super::drawing::{Drawing, DrawnShape, Name};
 use super::nested;
 use super::outlined::Outlined;
 use super::path::Line;
@@ -44,13 +44,17 @@ const LEVEL: f64 = 0.02;
 /// The pieces of a drawing; what was found and left out is told.
 ///
 /// Errors: all that is wrong with them.
-pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Remarks) -> Result<Vec<Piece>, Vec<Damage>> {
+pub(super) fn pieces(
+    d: &Drawing<'_>,
+    by_word: bool,
+    told: &mut Remarks,
+) -> Result<Vec<Piece>, Vec<SvgDamage>> {
     let outlines = outlines(d, told).map_err(|damage| vec![damage])?;
     if outlines.is_empty() {
         return Err(vec![match (d.shapes.is_empty(), d.pictures > 0, d.texts.is_empty()) {
-            (true, true, _) => Damage::PictureAlone,
-            (true, false, false) => Damage::TextAlone,
-            _ => Damage::NoPieces,
+            (true, true, _) => SvgDamage::PictureAlone,
+            (true, false, false) => SvgDamage::TextAlone,
+            _ => SvgDamage::NoPieces,
         }]);
     }
     if d.pictures > 0 {
@@ -62,7 +66,7 @@ pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Remarks) -> Resu
     left_out("marks lie on no piece", lost, told);
     let (mut out, mut faults, mut clockwise) = (Vec::new(), Vec::new(), 0);
     for (k, outline) in outlines.iter().enumerate() {
-        let mine: Vec<&Shape<'_>> = d.shapes.iter().filter(|s| owners.of_shape(s) == Some(k)).collect();
+        let mine: Vec<&DrawnShape<'_>> = d.shapes.iter().filter(|s| owners.of_shape(s) == Some(k)).collect();
         let drawn = Drawn { name: &names[k], place: place(outline.shape.node) };
         clockwise += usize::from(outline.closed && polygon_area(&outline.polygon) < 0.0);
         let piece = match drawn.piece(outline, &mine, told) {
@@ -77,7 +81,7 @@ pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Remarks) -> Resu
             texts.filter_map(|t| cut(&t.text, by_word, MOST_COPIES)).next().unwrap_or((1, 0));
         out.extend(copies(piece, plain, turned, told));
         if out.len() > MOST_PIECES {
-            return Err(vec![Damage::Many { what: "pieces", most: MOST_PIECES }]);
+            return Err(vec![SvgDamage::Many { what: "pieces", most: MOST_PIECES }]);
         }
     }
     if clockwise > 0 {
@@ -88,12 +92,12 @@ pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Remarks) -> Resu
     if !faults.is_empty() {
         return Err(faults);
     }
-    if out.is_empty() { Err(vec![Damage::NoPieces]) } else { Ok(out) }
+    if out.is_empty() { Err(vec![SvgDamage::NoPieces]) } else { Ok(out) }
 }
 
 /// Tells what is left out, and where it stands in the file.
-fn left_out<'d, 't: 'd>(why: &str, shapes: impl Iterator<Item = &'d Shape<'t>>, told: &mut Remarks) {
-    let places: Vec<&Shape<'_>> = shapes.collect();
+fn left_out<'d, 't: 'd>(why: &str, shapes: impl Iterator<Item = &'d DrawnShape<'t>>, told: &mut Remarks) {
+    let places: Vec<&DrawnShape<'_>> = shapes.collect();
     if !places.is_empty() {
         let first: Vec<String> = places.iter().take(MOST_TOLD).map(|s| place(s.node).to_string()).collect();
         let more = places.len().saturating_sub(MOST_TOLD);
@@ -128,10 +132,10 @@ fn part(d: &Drawing<'_>, mut group: usize) -> Option<usize> {
 }
 
 /// One outline a piece, in the order of the file.
-fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlined<'d, 't>>, Damage> {
+fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlined<'d, 't>>, SvgDamage> {
     let freesewing = d.groups.iter().any(|g| g.part.is_some());
-    let home = |s: &Shape<'_>| if freesewing { part(d, s.group) } else { Some(owner(d, s.group)) };
-    let mut groups: BTreeMap<usize, Vec<&'d Shape<'t>>> = BTreeMap::new();
+    let home = |s: &DrawnShape<'_>| if freesewing { part(d, s.group) } else { Some(owner(d, s.group)) };
+    let mut groups: BTreeMap<usize, Vec<&'d DrawnShape<'t>>> = BTreeMap::new();
     for s in d.shapes.iter().filter(|s| matches!(s.role, None | Some(Role::Outline))) {
         if let Some(group) = home(s) {
             groups.entry(group).or_default().push(s);
@@ -146,7 +150,7 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlin
         let (mut closed, tiny): (Vec<Outlined<'_, '_>>, Vec<_>) = all.partition(|o| o.area >= LEAST);
         small.extend(tiny.iter().map(|o| o.shape));
         if closed.len() > MOST_OUTLINES {
-            return Err(Damage::Many { what: "closed lines", most: MOST_OUTLINES });
+            return Err(SvgDamage::Many { what: "closed lines", most: MOST_OUTLINES });
         }
         if closed.is_empty() {
             found.extend(open(shapes, folded.contains(group)));
@@ -166,7 +170,7 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlin
         inner.extend(chosen.within.iter().map(|o| o.shape));
         frames.extend(chosen.frames.iter().map(|o| o.shape));
         if found.len() > MOST_OUTLINES {
-            return Err(Damage::Many { what: "closed lines", most: MOST_OUTLINES });
+            return Err(SvgDamage::Many { what: "closed lines", most: MOST_OUTLINES });
         }
     }
     let around = around_others(d, &found);
@@ -188,7 +192,7 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlin
 }
 
 /// Whether a shape has open lines alone, of some length.
-fn is_loose(shape: &Shape<'_>) -> bool {
+fn is_loose(shape: &DrawnShape<'_>) -> bool {
     let open = |l: &Line| !l.closed && (l.end() - l.start).norm() > JOINT;
     let length = |l: &Line| Side { name: String::new(), start: l.start, parts: l.parts.clone() }.length();
     shape.lines.iter().all(open) && shape.lines.iter().map(length).sum::<f64>() > SHORT
@@ -196,7 +200,7 @@ fn is_loose(shape: &Shape<'_>) -> bool {
 
 /// The closed lines of a shape that may be outlines, the largest first; those that lie within one
 /// are its holes.
-fn closed<'d, 't>(shape: &'d Shape<'t>) -> Vec<Outlined<'d, 't>> {
+fn closed<'d, 't>(shape: &'d DrawnShape<'t>) -> Vec<Outlined<'d, 't>> {
     let ends = |l: &&Line| l.closed || (l.end() - l.start).norm() <= JOINT;
     let mut loops: Vec<(f64, Vec<Side>, Vec<Point2>)> = Vec::new();
     for line in shape.lines.iter().filter(ends) {
@@ -245,7 +249,7 @@ fn drawn(line: &Line) -> Vec<(EdgeCurve, Point2)> {
 }
 
 /// What an element of one line is called by its author, if that serves as the name of an edge.
-fn own_name(shape: &Shape<'_>) -> Option<String> {
+fn own_name(shape: &DrawnShape<'_>) -> Option<String> {
     let name =
         shape.name.as_ref().filter(|n| !n.generated && !n.text.contains('.') && shape.lines.len() == 1);
     name.map(|n| n.text.clone())
@@ -253,7 +257,7 @@ fn own_name(shape: &Shape<'_>) -> Option<String> {
 
 /// The lines of a group that may be chained to one outline: those that are called so, else those
 /// that are called nothing. A fold may be the one that is missing.
-fn open<'d, 't>(shapes: &[&'d Shape<'t>], folded: bool) -> Option<Outlined<'d, 't>> {
+fn open<'d, 't>(shapes: &[&'d DrawnShape<'t>], folded: bool) -> Option<Outlined<'d, 't>> {
     let says = shapes.iter().any(|s| s.role == Some(Role::Outline));
     let mine = || shapes.iter().filter(move |s| !says || s.role == Some(Role::Outline));
     let mut sides = Vec::new();
@@ -332,7 +336,7 @@ impl<'d, 't> Owners<'d, 't> {
         Owners { d, outlines, of_group: alone.map(|(group, k)| (group, k[0])).collect() }
     }
 
-    fn of_shape(&self, s: &Shape<'_>) -> Option<usize> {
+    fn of_shape(&self, s: &DrawnShape<'_>) -> Option<usize> {
         self.at(s.group, middle(s))
     }
 
@@ -359,7 +363,7 @@ impl<'d, 't> Owners<'d, 't> {
 }
 
 /// The middle of the box around a shape.
-fn middle(s: &Shape<'_>) -> Point2 {
+fn middle(s: &DrawnShape<'_>) -> Point2 {
     let points =
         || s.lines.iter().flat_map(|l| std::iter::once(l.start).chain(l.parts.iter().map(|(_, end)| *end)));
     let first = points().next().unwrap_or_else(Point2::origin);
@@ -383,24 +387,24 @@ fn ends(line: &Line) -> (Point2, Point2) {
 /// A piece under construction, for errors.
 struct Drawn<'a> {
     name: &'a str,
-    place: Place,
+    place: SvgPlace,
 }
 
 impl Drawn<'_> {
-    fn fault(&self, what: &'static str) -> Damage {
-        Damage::Piece { piece: self.name.to_owned(), place: self.place.clone(), what }
+    fn fault(&self, what: &'static str) -> SvgDamage {
+        SvgDamage::Piece { piece: self.name.to_owned(), place: self.place.clone(), what }
     }
 
-    fn no_fold(&self, place: Place) -> Damage {
-        Damage::Fold { piece: self.name.to_owned(), place }
+    fn no_fold(&self, place: SvgPlace) -> SvgDamage {
+        SvgDamage::Fold { piece: self.name.to_owned(), place }
     }
 
     fn piece(
         &self,
         outline: &Outlined<'_, '_>,
-        mine: &[&Shape<'_>],
+        mine: &[&DrawnShape<'_>],
         told: &mut Remarks,
-    ) -> Result<Piece, Damage> {
+    ) -> Result<Piece, SvgDamage> {
         let folds = self.folds(mine)?;
         let mut sides = self.closed(outline, folds.first().map(|(fold, _)| fold), told)?;
         if let Some((_, at)) = folds.iter().find(|(fold, _)| !fold.holds(&sides)) {
@@ -442,17 +446,17 @@ impl Drawn<'_> {
 
     /// The lines at which the piece is cut on the fold, the longest first, and where they stand in
     /// the file.
-    fn folds(&self, mine: &[&Shape<'_>]) -> Result<Vec<(Fold, Place)>, Damage> {
-        let is_fold = |s: &&&Shape<'_>| matches!(s.role, Some(Role::Fold | Role::Grain { fold: true }));
+    fn folds(&self, mine: &[&DrawnShape<'_>]) -> Result<Vec<(Fold, SvgPlace)>, SvgDamage> {
+        let is_fold = |s: &&&DrawnShape<'_>| matches!(s.role, Some(Role::Fold | Role::Grain { fold: true }));
         let lines = mine.iter().filter(is_fold).flat_map(|s| s.lines.iter().map(move |l| (ends(l), *s)));
-        let mut lines: Vec<((Point2, Point2), &Shape<'_>)> =
+        let mut lines: Vec<((Point2, Point2), &DrawnShape<'_>)> =
             lines.filter(|((a, b), _)| (b - a).norm() > 1e-4).collect();
         lines.sort_by(|((a, b), _), ((c, d), _)| (d - c).norm().total_cmp(&(b - a).norm()));
-        let fold = |((a, b), shape): ((Point2, Point2), &Shape<'_>)| {
+        let fold = |((a, b), shape): ((Point2, Point2), &DrawnShape<'_>)| {
             let at = place(shape.node);
             Fold::through(a, b).map(|fold| (fold, at.clone())).ok_or_else(|| self.no_fold(at))
         };
-        let all: Vec<(Fold, Place)> = lines.into_iter().map(fold).collect::<Result<_, _>>()?;
+        let all: Vec<(Fold, SvgPlace)> = lines.into_iter().map(fold).collect::<Result<_, _>>()?;
         Ok(distinct(all))
     }
 
@@ -462,7 +466,7 @@ impl Drawn<'_> {
         outline: &Outlined<'_, '_>,
         fold: Option<&Fold>,
         told: &mut Remarks,
-    ) -> Result<Vec<Side>, Damage> {
+    ) -> Result<Vec<Side>, SvgDamage> {
         if outline.closed {
             return Ok(outline.sides.clone());
         }
@@ -480,7 +484,7 @@ impl Drawn<'_> {
             sides.extend(missing(fold, &sides));
         }
         let page = |p: Point2| (p.x * 1e3, -p.y * 1e3);
-        let sides = chained(sides, self.name, told).map_err(|gap| Damage::Open {
+        let sides = chained(sides, self.name, told).map_err(|gap| SvgDamage::Open {
             piece: self.name.to_owned(),
             place: self.place.clone(),
             gap_mm: gap.wide * 1e3,
@@ -490,7 +494,7 @@ impl Drawn<'_> {
         if sides.len() < 2 { Err(self.fault("its outline is one open line")) } else { Ok(sides) }
     }
 
-    fn simple(&self, sides: &[Side], turn: Vector2) -> Result<(), Damage> {
+    fn simple(&self, sides: &[Side], turn: Vector2) -> Result<(), SvgDamage> {
         let points = points(sides);
         let n = points.len() as u32;
         if n < 3 || polygon_area(&points).abs() < LEAST {
@@ -502,7 +506,7 @@ impl Drawn<'_> {
         // Back to the page.
         let (x, y) = (turn.x * p.x + turn.y * p.y, turn.x * p.y - turn.y * p.x);
         let (piece, place) = (self.name.to_owned(), self.place.clone());
-        Err(Damage::Crosses { piece, place, x: x * 1e3, y: -y * 1e3 })
+        Err(SvgDamage::Crosses { piece, place, x: x * 1e3, y: -y * 1e3 })
     }
 }
 
@@ -518,7 +522,10 @@ fn missing(fold: &Fold, sides: &[Side]) -> Option<Side> {
 }
 
 /// The longest line of some role, and its shape.
-fn longest<'d, 't>(mine: &[&'d Shape<'t>], is: impl Fn(Role) -> bool) -> Option<(&'d Line, &'d Shape<'t>)> {
+fn longest<'d, 't>(
+    mine: &[&'d DrawnShape<'t>],
+    is: impl Fn(Role) -> bool,
+) -> Option<(&'d Line, &'d DrawnShape<'t>)> {
     let of_role = mine.iter().filter(|s| s.role.is_some_and(&is));
     let lines = of_role.flat_map(|s| s.lines.iter().map(move |l| (l, *s)));
     let long = |line: &Line| {
@@ -551,11 +558,15 @@ struct Marks {
 }
 
 impl Marks {
-    fn of(outline: &Outlined<'_, '_>, mine: &[&Shape<'_>], up: impl Fn(Point2) -> Point2 + Copy) -> Self {
+    fn of(
+        outline: &Outlined<'_, '_>,
+        mine: &[&DrawnShape<'_>],
+        up: impl Fn(Point2) -> Point2 + Copy,
+    ) -> Self {
         let with = |role: Role| mine.iter().filter(move |s| s.role == Some(role));
-        let at = |s: &&&Shape<'_>| up(middle(s));
+        let at = |s: &&&DrawnShape<'_>| up(middle(s));
         let drawn_in = outline.holes.iter().map(|h| h.iter().map(|p| up(*p)).collect());
-        let around = |s: &&Shape<'_>| {
+        let around = |s: &&DrawnShape<'_>| {
             let polygon = |o: Outlined<'_, '_>| o.polygon.iter().map(|p| up(*p)).collect::<Vec<_>>();
             closed(s).into_iter().map(polygon).collect::<Vec<_>>()
         };

@@ -19,14 +19,14 @@ fn page(inside: &str) -> String {
 
 /// The pieces and what is told of them, warnings first; of several faults the first. A unit is a
 /// millimetre, whatever the page says.
-fn read(svg: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
+fn read(svg: &str) -> Result<(Vec<Piece>, Vec<String>), SvgDamage> {
     let mut told = Remarks::default();
     let pieces = pieces_of(svg.as_bytes(), DrawingUnit::Millimetres, &mut told);
     let told = || [told.warnings, told.notes].concat().into_iter().filter(|t| !t.starts_with('`')).collect();
     pieces.map(|p| (p, told())).map_err(|mut all| all.remove(0))
 }
 
-fn of_bytes(bytes: &[u8]) -> Result<Vec<Piece>, Vec<Damage>> {
+fn of_bytes(bytes: &[u8]) -> Result<Vec<Piece>, Vec<SvgDamage>> {
     pieces_of(bytes, DrawingUnit::Millimetres, &mut Remarks::default())
 }
 
@@ -200,9 +200,9 @@ fn units_are_those_of_the_page_and_told() {
         let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {attributes}>{square}</svg>");
         let mut told = Remarks::default();
         let pieces = pieces_of(svg.as_bytes(), unit, &mut told).map_err(|mut all| all.remove(0))?;
-        Ok::<_, Damage>((length(&pieces[0], "edge_0") / 960.0, told))
+        Ok::<_, SvgDamage>((length(&pieces[0], "edge_0") / 960.0, told))
     };
-    let near = |found: Result<(f64, Remarks), Damage>, metres: f64| {
+    let near = |found: Result<(f64, Remarks), SvgDamage>, metres: f64| {
         let (found, told) = found.unwrap();
         assert!((found / metres - 1.0).abs() < 1e-9, "{found} {metres}");
         [told.warnings, told.notes]
@@ -423,8 +423,8 @@ fn damage_is_refused_with_element_and_place() {
     is("<svg", "it is no XML at line 1 column 1: the document does not have a root node", again);
     is("<html/>", "its first element is \"html\", not \"svg\"", "give a file that was saved as SVG");
     is("\u{1f}\u{8b}", "it is no XML at line 1 column 1: unknown token", again);
-    assert_eq!(of_bytes(&[0x1f, 0x8b, 8]).unwrap_err(), [Damage::Compressed]);
-    assert_eq!(of_bytes(&[0xff, 0xfe]).unwrap_err(), [Damage::Encoding]);
+    assert_eq!(of_bytes(&[0x1f, 0x8b, 8]).unwrap_err(), [SvgDamage::Compressed]);
+    assert_eq!(of_bytes(&[0xff, 0xfe]).unwrap_err(), [SvgDamage::Encoding]);
     let redraw = "draw the element again, or take it out";
     is(
         &page("<g>\n <path id=\"hem\" d=\"M 0 0 L x\"/></g>"),

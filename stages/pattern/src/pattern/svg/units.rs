@@ -5,7 +5,7 @@
 //! page is on a screen, which need not be how large the garment is.
 
 use super::super::unit::{By, DrawingUnit, Taken};
-use super::damage::Damage;
+use super::damage::SvgDamage;
 use super::source::{place, short};
 use roxmltree::Node;
 use svgtypes::{Length, LengthUnit, ViewBox};
@@ -28,7 +28,7 @@ pub(super) fn pixels(length: Length) -> Option<f64> {
 }
 
 /// The unit of a whole file, by the parameter `unit`, by the page's size, else as a pixel.
-pub(super) fn unit(root: Node<'_, '_>, text: &str, asked: DrawingUnit) -> Result<Taken, Damage> {
+pub(super) fn unit(root: Node<'_, '_>, text: &str, asked: DrawingUnit) -> Result<Taken, SvgDamage> {
     let view = match root.attribute("viewBox") {
         Some(value) => Some(view_box(root, value)?),
         None => None,
@@ -90,9 +90,9 @@ pub(super) fn unit(root: Node<'_, '_>, text: &str, asked: DrawingUnit) -> Result
     }
 }
 
-fn view_box(root: Node<'_, '_>, value: &str) -> Result<ViewBox, Damage> {
+fn view_box(root: Node<'_, '_>, value: &str) -> Result<ViewBox, SvgDamage> {
     let sound = |v: &ViewBox| [v.x, v.y, v.w, v.h].iter().all(|n| n.is_finite() && n.abs() <= 1e9);
-    value.parse::<ViewBox>().ok().filter(sound).ok_or_else(|| Damage::Attribute {
+    value.parse::<ViewBox>().ok().filter(sound).ok_or_else(|| SvgDamage::Attribute {
         place: place(root),
         attribute: "viewBox",
         value: short(value),

@@ -4,7 +4,7 @@
 //! raised as a whole until they are free. Where the body stands between the sides of another seam,
 //! as an arm does that is spread otherwise than the sleeve, it is told. Cost: some milliseconds.
 
-use super::Places;
+use super::PiecePlaces;
 use super::depth::DepthMap;
 use crate::place::sew::Offsets;
 use toile_core::prelude::*;
@@ -41,7 +41,7 @@ impl Board<'_> {
 pub(super) fn boards<'a>(
     pattern: &Pattern,
     sleeves: &[String],
-    places: &'a Places,
+    places: &'a PiecePlaces,
     offsets: &Offsets,
 ) -> Vec<Board<'a>> {
     let part = |name: &str| pattern.piece(name).and_then(|p| p.body_part);

@@ -9,7 +9,7 @@
 //! go around both legs. So a piece is one of a leg where all that it is sewn to there lies on its
 //! side.
 
-use super::Places;
+use super::PiecePlaces;
 use crate::place::sew::Offsets;
 use std::collections::BTreeMap;
 use toile_body::slice;
@@ -37,7 +37,7 @@ const ASIDE: f64 = 0.02;
 pub(super) fn swing(
     pattern: &Pattern,
     body: &Body,
-    places: &mut Places,
+    places: &mut PiecePlaces,
     seams: &[GarmentSeam],
     offsets: &Offsets,
 ) -> Vec<String> {
@@ -87,7 +87,7 @@ pub(super) fn swing(
 /// lie on one side of the middle, there and right below the fork, the second height: a skirt that
 /// is longer on one side lies on that side only low down.
 fn of_one_leg(
-    places: &Places,
+    places: &PiecePlaces,
     seams: &[GarmentSeam],
     offsets: &Offsets,
     [below, fork]: [f64; 2],
@@ -172,7 +172,7 @@ mod tests {
 
     /// The half of a left leg from waist to ankle, 20 cm wide, that leaves the middle by so much a
     /// metre.
-    fn half(spread: f64) -> (Pattern, Places) {
+    fn half(spread: f64) -> (Pattern, PiecePlaces) {
         let row = |k: usize| {
             let y = 0.105 + 0.02 * k as f64;
             let out = spread * (0.8 - y).max(0.0);

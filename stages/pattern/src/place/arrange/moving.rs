@@ -5,7 +5,7 @@
 //! Sleeves have none: flat beside the arm, they sew worse in all garments that were tried.
 
 use super::limb::Limb;
-use super::{Places, legs, tubes};
+use super::{PiecePlaces, legs, tubes};
 use crate::place::sew::Offsets;
 use toile_core::prelude::*;
 
@@ -21,13 +21,13 @@ pub(super) struct Moving<'a> {
     pub(super) clearance: f64,
 }
 
-/// Places, and what was moved, in words.
-type Moved = (Places, Vec<String>);
+/// PiecePlaces, and what was moved, in words.
+type Moved = (PiecePlaces, Vec<String>);
 
 impl Moving<'_> {
     /// The pieces moved to legs and arms; and, where legs were moved, the places without that, in
     /// words.
-    pub(super) fn moved_and_others(&self, places: &Places) -> (Moved, Vec<(&'static str, Places)>) {
+    pub(super) fn moved_and_others(&self, places: &PiecePlaces) -> (Moved, Vec<(&'static str, PiecePlaces)>) {
         let (swung, mut told) = self.swung(places.clone());
         let others = match told.is_empty() {
             true => Vec::new(),
@@ -39,13 +39,13 @@ impl Moving<'_> {
     }
 
     /// Halves of legs that miss the body's, swung before them.
-    fn swung(&self, mut places: Places) -> Moved {
+    fn swung(&self, mut places: PiecePlaces) -> Moved {
         let told = legs::swing(self.pattern, self.body, &mut places, self.seams, self.offsets);
         (places, told)
     }
 
     /// Sleeves and cuffs, bent around the arms.
-    fn bent(&self, mut places: Places) -> Moved {
+    fn bent(&self, mut places: PiecePlaces) -> Moved {
         let mut told = Vec::new();
         for limb in Limb::arms(self.body) {
             let mine = match self.sleeves {

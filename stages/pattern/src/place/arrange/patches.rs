@@ -5,7 +5,7 @@
 //! then stands a little outside of the point of the other piece that it covers. Cost: linear in
 //! vertices. Limits: a patch on a patch follows the order of the seams.
 
-use super::{Places, unknown};
+use super::{PiecePlaces, unknown};
 use crate::place::sew::Offsets;
 use nalgebra::{Isometry2, Rotation2};
 use std::collections::BTreeSet;
@@ -32,12 +32,12 @@ pub(super) fn without(pattern: &Pattern, patches: &BTreeSet<String>) -> Pattern 
     }
 }
 
-/// Places every patch; a sentence each.
+/// PiecePlaces every patch; a sentence each.
 ///
 /// Errors: patches that lie on each other in a ring.
 pub(super) fn lay(
     patches: &BTreeSet<String>,
-    places: &mut Places,
+    places: &mut PiecePlaces,
     seams: &[GarmentSeam],
     offsets: &Offsets,
 ) -> Result<Vec<String>, StageError> {

@@ -35,14 +35,14 @@ type Lines = (PleatFold, [Point2; 2], [Point2; 2]);
 
 /// A straight line as a point and a unit direction.
 #[derive(Clone, Copy)]
-struct Line {
+struct PleatLine {
     at: Point2,
     way: Vector2,
 }
 
-impl Line {
+impl PleatLine {
     fn between(a: Point2, b: Point2) -> Self {
-        Line { at: a, way: (b - a).try_normalize(0.0).unwrap_or_else(Vector2::y) }
+        PleatLine { at: a, way: (b - a).try_normalize(0.0).unwrap_or_else(Vector2::y) }
     }
 
     /// Signed distance of a point, metres.
@@ -61,11 +61,11 @@ impl Line {
 
 /// A pleat: where the cloth is folded, in their order, and how each zone moves.
 struct Pleat {
-    folds: Vec<Line>,
+    folds: Vec<PleatLine>,
     /// One more than folds; the first or the last of them stays.
     zones: Vec<Affine2<f64>>,
     /// The far line of a knife pleat, which is no fold.
-    under: Option<Line>,
+    under: Option<PleatLine>,
     /// 1 where zones follow each other from left to right of the first line, else -1.
     sign: f64,
     /// Whether the zone before the first fold is the one that stays.
@@ -78,12 +78,12 @@ struct Pleat {
 
 impl Pleat {
     fn new(fold: PleatFold, a: [Point2; 2], b: [Point2; 2], across: Vector2) -> Self {
-        let part = |s: f64| Line::between(a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s);
+        let part = |s: f64| PleatLine::between(a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s);
         let shares: &[f64] = match fold {
             PleatFold::Knife => &[0.0, 0.5],
             PleatFold::Box => &[0.0, 0.25, 0.75, 1.0],
         };
-        let folds: Vec<Line> = shares.iter().map(|s| part(*s)).collect();
+        let folds: Vec<PleatLine> = shares.iter().map(|s| part(*s)).collect();
         let mut zones = vec![Affine2::identity()];
         folds.iter().for_each(|l| zones.push(zones[zones.len() - 1] * l.turn()));
         let middle = |l: [Point2; 2]| nalgebra::center(&l[0], &l[1]);
@@ -124,8 +124,8 @@ impl Pleat {
     /// How far a point starts inside, metres.
     fn depth(&self, p: Point2) -> f64 {
         // From 0 at a line to 1 beyond it; or from 0 before a line to 1 at it.
-        let past = |l: &Line, over: f64| (self.sign * l.side(p) / over).clamp(0.0, 1.0);
-        let before = |l: &Line| (self.sign * l.side(p) / STEP + 1.0).clamp(0.0, 1.0);
+        let past = |l: &PleatLine, over: f64| (self.sign * l.side(p) / over).clamp(0.0, 1.0);
+        let before = |l: &PleatLine| (self.sign * l.side(p) / STEP + 1.0).clamp(0.0, 1.0);
         match (&self.folds[..], &self.under) {
             ([a, m], Some(under)) => DEEP * (past(a, STEP) + past(m, STEP) - 2.0 * past(under, RAMP)),
             ([a, m, n, b], _) => DEEP * (past(a, STEP) + past(m, STEP) - before(n) - before(b)),
@@ -166,7 +166,7 @@ fn ends(pattern: &Pattern, u: &EdgeUse) -> Option<[Point2; 2]> {
 }
 
 fn folded(panel: &Panel, all: &[Lines]) -> Folded {
-    let across = Line::between(all[0].1[0], all[0].1[1]).way;
+    let across = PleatLine::between(all[0].1[0], all[0].1[1]).way;
     // At right angles to the first line, to the right.
     let across = Vector2::new(across.y.abs(), -across.x * across.y.signum());
     let mut pleats: Vec<Pleat> = all.iter().map(|(kind, a, b)| Pleat::new(*kind, *a, *b, across)).collect();

@@ -80,7 +80,7 @@ pub(super) struct Joint {
 
 /// An edge in a side of a seam: of which piece, and from where to where it runs as shares of the
 /// side.
-struct Stretch {
+struct SeamStretch {
     piece: usize,
     edge: usize,
     reversed: bool,
@@ -89,7 +89,7 @@ struct Stretch {
 }
 
 /// A side of a seam as stretches.
-fn stretches(pattern: &Pattern, side: &[EdgeUse]) -> Vec<Stretch> {
+fn stretches(pattern: &Pattern, side: &[EdgeUse]) -> Vec<SeamStretch> {
     let known = side.iter().filter_map(|u| {
         let piece = pattern.pieces.iter().position(|p| p.name == u.edge.panel)?;
         Some((piece, pattern.pieces[piece].edge_number(&u.edge.edge)?, u.reversed))
@@ -98,21 +98,21 @@ fn stretches(pattern: &Pattern, side: &[EdgeUse]) -> Vec<Stretch> {
     for (piece, edge, reversed) in known {
         let from = at;
         at += pattern.pieces[piece].outer.path(edge).length();
-        out.push(Stretch { piece, edge, reversed, from, to: at });
+        out.push(SeamStretch { piece, edge, reversed, from, to: at });
     }
     out.iter_mut().for_each(|s| (s.from, s.to) = (s.from / at, s.to / at));
     out
 }
 
 /// The edges of one piece in a side, where they begin and where they end.
-fn of_piece(side: &[Stretch], piece: usize) -> (Vec<usize>, f64, f64) {
+fn of_piece(side: &[SeamStretch], piece: usize) -> (Vec<usize>, f64, f64) {
     let own = || side.iter().filter(|s| s.piece == piece);
     let (from, to) = (own().map(|s| s.from), own().map(|s| s.to));
     (own().map(|s| s.edge).collect(), from.fold(1.0, f64::min), to.fold(0.0, f64::max))
 }
 
 /// The point of a piece at a share of a side.
-fn at_share(pattern: &Pattern, side: &[Stretch], piece: usize, share: f64) -> Point2 {
+fn at_share(pattern: &Pattern, side: &[SeamStretch], piece: usize, share: f64) -> Point2 {
     let own = || side.iter().filter(|s| s.piece == piece);
     let Some(s) = own().find(|s| share <= s.to).or_else(|| own().next_back()) else {
         return Point2::origin();
@@ -124,10 +124,10 @@ fn at_share(pattern: &Pattern, side: &[Stretch], piece: usize, share: f64) -> Po
 
 /// The seams of a pattern, piece by piece.
 pub(super) fn joints(pattern: &Pattern) -> Vec<Joint> {
-    let pieces = |side: &[Stretch]| side.iter().map(|s| s.piece).collect::<BTreeSet<usize>>();
+    let pieces = |side: &[SeamStretch]| side.iter().map(|s| s.piece).collect::<BTreeSet<usize>>();
     let mut out = Vec::new();
     for seam in &pattern.seams {
-        let sides: Vec<Vec<Stretch>> = seam.sides.iter().map(|s| stretches(pattern, s)).collect();
+        let sides: Vec<Vec<SeamStretch>> = seam.sides.iter().map(|s| stretches(pattern, s)).collect();
         for (n, one) in sides.iter().enumerate() {
             for other in &sides[n + 1..] {
                 let pairs =
@@ -140,7 +140,7 @@ pub(super) fn joints(pattern: &Pattern) -> Vec<Joint> {
 }
 
 /// What two sides of a seam join of two pieces; none where these lie nowhere beside each other.
-fn joint(pattern: &Pattern, [one, other]: [&[Stretch]; 2], (i, j): (usize, usize)) -> Option<Joint> {
+fn joint(pattern: &Pattern, [one, other]: [&[SeamStretch]; 2], (i, j): (usize, usize)) -> Option<Joint> {
     let ((a, a_from, a_to), (b, b_from, b_to)) = (of_piece(one, i), of_piece(other, j));
     let (from, to) = (a_from.max(b_from), a_to.min(b_to));
     let share = f64::midpoint(from, to);

@@ -8,7 +8,7 @@
 //! are. Bent pieces keep every length along their cylinder. Cost: some milliseconds. Limits: the
 //! levels are those of a standing body with landmarks.
 
-use super::Places;
+use super::PiecePlaces;
 use super::limb::Limb;
 use super::region::{Decided, Joint, Region, Side, bounds, joints, middle};
 use crate::place::sew::Offsets;
@@ -112,10 +112,10 @@ pub(super) fn stand(
     offsets: &Offsets,
     body: &Body,
     clearance: f64,
-) -> Result<(Places, Vec<String>), StageError> {
+) -> Result<(PiecePlaces, Vec<String>), StageError> {
     let joints = joints(pattern);
     let figure = Figure::of(body)?;
-    let (mut places, mut told) = (Places::new(), Vec::new());
+    let (mut places, mut told) = (PiecePlaces::new(), Vec::new());
     let mut hung: BTreeMap<usize, Hung> = BTreeMap::new();
     // Bands go where that is which they are sewn to.
     let order = || (0..decided.len()).filter(|i| decided[*i].region != Region::Waist);

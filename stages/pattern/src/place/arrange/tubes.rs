@@ -1,6 +1,6 @@
 //! Pieces around an arm, bent to cylinders.
 
-use super::Places;
+use super::PiecePlaces;
 use super::limb::Limb;
 use crate::place::sew::Offsets;
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,7 +15,7 @@ const WORDS: [&str; 3] = ["sleeve", "cuff", "arm"];
 const SLICES: usize = 12;
 
 /// A piece beside the arm, in the arm's coordinates.
-struct Side {
+struct ArmPiece {
     name: String,
     /// Before the arm, or behind it.
     is_front: bool,
@@ -28,7 +28,7 @@ struct Side {
 }
 
 /// The pieces that the pattern puts around the arm.
-pub(super) fn around(limb: &Limb, pattern: &Pattern, places: &Places) -> Vec<String> {
+pub(super) fn around(limb: &Limb, pattern: &Pattern, places: &PiecePlaces) -> Vec<String> {
     let mine = places.iter().filter(|(name, points)| is_of_arm(pattern, name) && limb.has(&middle(points)));
     mine.map(|(name, _)| name.clone()).collect()
 }
@@ -37,7 +37,7 @@ pub(super) fn around(limb: &Limb, pattern: &Pattern, places: &Places) -> Vec<Str
 pub(super) fn bend(
     limb: &Limb,
     mine: &[String],
-    places: &mut Places,
+    places: &mut PiecePlaces,
     seams: &[GarmentSeam],
     offsets: &Offsets,
     clearance: f64,
@@ -46,7 +46,8 @@ pub(super) fn bend(
     let mut told = Vec::new();
     for tube in tubes(limb, mine, places, &sewn) {
         let axis = file_axis(limb, &tube, places, seams, offsets);
-        let mut sides: Vec<Side> = tube.iter().map(|name| side(limb, &axis, name, &places[name])).collect();
+        let mut sides: Vec<ArmPiece> =
+            tube.iter().map(|name| side(limb, &axis, name, &places[name])).collect();
         let girth: f64 = [true, false]
             .map(|front| sides.iter().filter(|s| s.is_front == front).map(|s| s.width).fold(0.0, f64::max))
             .iter()
@@ -113,7 +114,7 @@ fn is_front(limb: &Limb, points: &[Point3]) -> bool {
 fn tubes(
     limb: &Limb,
     mine: &[String],
-    places: &Places,
+    places: &PiecePlaces,
     sewn: &BTreeSet<(String, String)>,
 ) -> Vec<Vec<String>> {
     let mut group: Vec<usize> = (0..mine.len()).collect();
@@ -136,7 +137,7 @@ fn tubes(
 fn file_axis(
     limb: &Limb,
     tube: &[String],
-    places: &Places,
+    places: &PiecePlaces,
     seams: &[GarmentSeam],
     offsets: &Offsets,
 ) -> Vector3 {
@@ -164,7 +165,7 @@ fn file_axis(
 }
 
 /// A piece in the coordinates of an arm that runs along `axis`.
-fn side(limb: &Limb, axis: &Vector3, name: &str, points: &[Point3]) -> Side {
+fn side(limb: &Limb, axis: &Vector3, name: &str, points: &[Point3]) -> ArmPiece {
     let up = limb.front.cross(axis) * limb.front.cross(&limb.axis).dot(&limb.up).signum();
     let flat: Vec<[f64; 2]> =
         points.iter().map(|p| [(p - limb.root).dot(axis), (p - limb.root).dot(&up)]).collect();
@@ -179,7 +180,7 @@ fn side(limb: &Limb, axis: &Vector3, name: &str, points: &[Point3]) -> Side {
     }
     let (low, high) = bounds(flat.iter().map(|p| p[1]));
     let middle = middles.iter().sum::<f64>() / middles.len().max(1) as f64;
-    Side { name: name.to_owned(), is_front: is_front(limb, points), flat, middle, width: high - low }
+    ArmPiece { name: name.to_owned(), is_front: is_front(limb, points), flat, middle, width: high - low }
 }
 
 fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {

@@ -11,7 +11,7 @@ const CHECK_EVERY: usize = 1000;
 
 /// The vertices of the cut garment: of each panel the old ones, then those on its edges, then those
 /// in its triangles.
-pub(super) struct Cut<'a> {
+pub(super) struct GarmentCut<'a> {
     old: &'a Garment,
     edges: &'a Edges,
     /// Parts of each edge, at least 1.
@@ -26,7 +26,7 @@ pub(super) struct Cut<'a> {
     panels: Vec<Range<usize>>,
 }
 
-impl<'a> Cut<'a> {
+impl<'a> GarmentCut<'a> {
     pub(super) fn new(old: &'a Garment, edges: &'a Edges, parts: usize) -> Self {
         let (mut kept, mut on_edge, mut in_triangle) = (Vec::new(), Vec::new(), Vec::new());
         let (mut panels, mut next) = (Vec::new(), 0);
@@ -41,7 +41,7 @@ impl<'a> Cut<'a> {
             number(&mut in_triangle, panel.triangles.len(), inner(parts).count());
             panels.push(start..next);
         }
-        Cut { old, edges, parts, kept, on_edge, in_triangle, panels }
+        GarmentCut { old, edges, parts, kept, on_edge, in_triangle, panels }
     }
 
     /// How many vertices there are.

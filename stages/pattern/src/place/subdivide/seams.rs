@@ -1,6 +1,6 @@
 //! Seams of the cut garment: new vertices are paired where both sides of a seam run along an edge.
 
-use super::cut::Cut;
+use super::cut::GarmentCut;
 use super::edges::Edges;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::artifact::join_pairs;
@@ -16,7 +16,7 @@ type Way = (u32, Option<usize>);
 pub(super) fn seams(
     garment: &Garment,
     edges: &Edges,
-    cut: &Cut<'_>,
+    cut: &GarmentCut<'_>,
     cx: &Context,
 ) -> Result<Vec<GarmentSeam>, StageError> {
     let ways = ways(garment, edges, cx)?;
@@ -49,7 +49,7 @@ fn ways(garment: &Garment, edges: &Edges, cx: &Context) -> Result<BTreeMap<u32, 
 struct Sides<'a> {
     pairs: &'a [[u32; 2]],
     edges: &'a Edges,
-    cut: &'a Cut<'a>,
+    cut: &'a GarmentCut<'a>,
     ways: &'a BTreeMap<u32, Vec<Way>>,
 }
 
@@ -119,7 +119,7 @@ impl Sides<'_> {
 
 /// Joins the pairs of closed seams: new vertices lie where the least old one does, or else the
 /// least new one.
-pub(super) fn join(fine: &mut Garment, cut: &Cut<'_>) {
+pub(super) fn join(fine: &mut Garment, cut: &GarmentCut<'_>) {
     let closed = fine.seams.iter().filter(|s| s.state == SeamState::Closed);
     join_pairs(&mut fine.weld, closed.flat_map(|s| &s.pairs));
     let mut place: Vec<usize> = fine.weld.iter().map(|w| *w as usize).collect();

@@ -104,8 +104,8 @@ impl Waist {
 
 /// The skirt and the band of a layer, as they are cut or as they lie in the photo.
 pub(super) fn gathered(sides: &[Side; 2], layer: Layer, fullness: f64, band: f64, is_cut: bool) -> Vec<Flat> {
-    let halves = [0, 1].map(|k| Half::of(&sides[k], fullness, band, is_cut));
-    let both = |of: fn(&Half) -> Curve| [0, 1].map(|k: usize| sides[k].laid(of(&halves[k])));
+    let halves = [0, 1].map(|k| SkirtHalf::of(&sides[k], fullness, band, is_cut));
+    let both = |of: fn(&SkirtHalf) -> Curve| [0, 1].map(|k: usize| sides[k].laid(of(&halves[k])));
     let side = |k: usize| sides[k].own(&[("side", halves[k].side.clone())]);
     let end = |k: usize| sides[k].own(&[("end", Run::Cubic(halves[k].end))]);
     let ([right, left], [right_hem, left_hem]) = (both(|h| h.top), both(|h| h.hem));
@@ -128,7 +128,7 @@ pub(super) fn gathered(sides: &[Side; 2], layer: Layer, fullness: f64, band: f64
 }
 
 /// One half of the skirt, upwards, and of its band.
-struct Half {
+struct SkirtHalf {
     /// From the middle to the side.
     hem: Curve,
     side: Run,
@@ -141,8 +141,8 @@ struct Half {
     upper: Curve,
 }
 
-impl Half {
-    fn of(side: &Side, fullness: f64, band: f64, is_cut: bool) -> Half {
+impl SkirtHalf {
+    fn of(side: &Side, fullness: f64, band: f64, is_cut: bool) -> SkirtHalf {
         let edges: Vec<Curve> = side.edges.iter().map(|e| e.1).collect();
         let (hem, waist) = (edges[0], edges[edges.len() - 1]);
         let (corner, middle) = (waist.0[0], waist.0[3]);
@@ -153,7 +153,7 @@ impl Half {
             let hem = hem.moved(|p| Point2::new(wider * p.x, p.y));
             let half = polyline_length(&waist.points(24));
             let [low, high] = [middle.y - band, middle.y].map(|y| Point2::new(half, y));
-            return Half {
+            return SkirtHalf {
                 hem,
                 side: Run::Cubic(straight(hem.0[3], top)),
                 top: straight(top, down(middle)),
@@ -163,7 +163,7 @@ impl Half {
             };
         }
         let (below, top) = cut_at(&edges[1..edges.len() - 1], corner.y - band);
-        Half {
+        SkirtHalf {
             hem,
             side: Run::of(below),
             top: straight(top, down(middle)),

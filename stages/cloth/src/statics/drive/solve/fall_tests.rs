@@ -4,10 +4,10 @@
 use super::tests::*;
 use super::*;
 use crate::contact::past::Start;
-use crate::energy::Vec3;
 use crate::fabric::Fabric;
 use crate::scene::generate;
 use std::ops::ControlFlow;
+use toile_geometry::Vec3;
 
 /// The skirt of 2,200 triangles after a change.
 fn skirt(change: impl Fn(&mut Scene)) -> Scene {

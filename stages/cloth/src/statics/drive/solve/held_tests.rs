@@ -1,10 +1,10 @@
 //! Cloth with bending hysteresis keeps a part of its folds.
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::energy::Vec3;
 use crate::fabric::Fabric;
 use crate::solver::layout::{Layout, Rectangle};
 use std::ops::ControlFlow;
+use toile_geometry::Vec3;
 
 /// Curvature that the strip is bent to, 1/m.
 const BENT: f64 = 60.0;

@@ -2,13 +2,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
-use crate::energy::Vec3;
 use crate::fabric::Fabric;
 use crate::scene::{SceneBody, generate};
 use crate::solver::layout::{Layout, Rectangle};
 use nalgebra::Vector3;
 use nalgebra::{Rotation3, Vector2};
 use std::ops::ControlFlow;
+use toile_geometry::Vec3;
 
 fn tilted(tangent: f64) -> Rotation3<f64> {
     Rotation3::from_axis_angle(&Vector3::z_axis(), tangent.atan())

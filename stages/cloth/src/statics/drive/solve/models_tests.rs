@@ -3,10 +3,10 @@
 use super::tests::deepest;
 use super::*;
 use crate::energy::Models;
-use crate::energy::Vec3;
 use crate::energy::{Bending, Membrane};
 use crate::scene::{StrainLimit, generate};
 use std::ops::ControlFlow;
+use toile_geometry::Vec3;
 
 const MEMBRANES: [Membrane; 3] = [Membrane::Woven, Membrane::StVenantKirchhoff, Membrane::Springs];
 const BENDINGS: [Bending; 4] = [Bending::Quadratic, Bending::Hinge, Bending::DiscreteShell, Bending::SkipOne];

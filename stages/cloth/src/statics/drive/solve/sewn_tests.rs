@@ -2,12 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
-use crate::energy::Vec3;
 use crate::error::ClothError;
 use crate::scene::{SceneError, Seam, StrainLimit, generate};
 use crate::statics::levels::assemble::cloths;
 use crate::statics::levels::pieces::Pieces;
 use std::ops::ControlFlow;
+use toile_geometry::Vec3;
 use toile_geometry::cloth_tree::ClothTree;
 
 fn gap(scene: &Scene, x: &[Vec3]) -> f64 {

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
-use crate::energy::Vec3;
 use crate::scene::{SceneBody, generate};
+use toile_geometry::Vec3;
 
 /// Whether the way from `p` to `q` passes through a triangle.
 fn passes([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {

@@ -1,6 +1,5 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
-use crate::energy::Vec3;
 use crate::fabric::Fabric;
 use crate::scene::Seam;
 use crate::scene::{Phase, SceneBody, generate};
@@ -9,6 +8,7 @@ use crate::statics::levels::pieces::Pieces;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
+use toile_geometry::Vec3;
 use toile_geometry::cloth_tree::ClothTree;
 
 pub(super) fn settle(scene: &Scene) -> Result<Equilibrium, StaticsError> {

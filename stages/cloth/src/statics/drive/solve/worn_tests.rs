@@ -3,8 +3,8 @@
 use super::tests::*;
 use super::*;
 use crate::contact::body::Body;
-use crate::energy::Vec3;
 use crate::scene::generate;
+use toile_geometry::Vec3;
 
 /// Depth of the deepest of many points of each triangle, m; negative where all are outside.
 fn deepest_anywhere(scene: &Scene, x: &[Vec3]) -> f64 {

@@ -5,7 +5,7 @@
 //! halves. Cost: O(n) for n nodes with few neighbours, and O(w log w) for the w nodes near the
 //! middle.
 
-use super::Neighbours;
+use super::NodeNeighbours;
 use nalgebra::Vector3;
 use std::cmp::Ordering;
 
@@ -22,7 +22,7 @@ const CROOKED: f64 = 2.0;
 /// Bisects sets of nodes.
 pub(super) struct Bisector<'h> {
     layout: &'h [Vector3<f64>],
-    neighbours: &'h Neighbours,
+    neighbours: &'h NodeNeighbours,
     /// The set that each node is in; 0 for none.
     set: Vec<u32>,
     sets: u32,
@@ -31,7 +31,7 @@ pub(super) struct Bisector<'h> {
 }
 
 /// A cut across an axis.
-struct Cut {
+struct AxisCut {
     axis: usize,
     /// The number of nodes before it.
     before: usize,
@@ -40,7 +40,7 @@ struct Cut {
 }
 
 impl<'h> Bisector<'h> {
-    pub(super) fn new(layout: &'h [Vector3<f64>], neighbours: &'h Neighbours) -> Self {
+    pub(super) fn new(layout: &'h [Vector3<f64>], neighbours: &'h NodeNeighbours) -> Self {
         Self { layout, neighbours, set: vec![0; layout.len()], sets: 0, rank: vec![0; layout.len()] }
     }
 
@@ -78,7 +78,7 @@ impl<'h> Bisector<'h> {
         let sides = sides(nodes, self.layout);
         let set = self.mark(nodes);
         let long = (0..3).filter(|&axis| sides[axis] >= LEAST_SIDE * sides.max());
-        let cuts: Vec<Cut> = long.map(|axis| self.best_across(axis, nodes, set)).collect();
+        let cuts: Vec<AxisCut> = long.map(|axis| self.best_across(axis, nodes, set)).collect();
         let Some(best) = cuts.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) else { return nodes.len() / 2 };
         nodes.select_nth_unstable_by(best.before, |a, b| self.order(best.axis, a, b));
         best.before
@@ -91,7 +91,7 @@ impl<'h> Bisector<'h> {
     }
 
     /// The best cut across an axis.
-    fn best_across(&mut self, axis: usize, nodes: &mut [u32], set: u32) -> Cut {
+    fn best_across(&mut self, axis: usize, nodes: &mut [u32], set: u32) -> AxisCut {
         let half = nodes.len() / 2;
         let reach = (nodes.len() as f64 * MIDDLE).ceil() as usize;
         let (from, to) = (half - reach, half + reach);
@@ -103,11 +103,11 @@ impl<'h> Bisector<'h> {
         let cuts =
             self.separators(nodes, set, from, to).into_iter().zip(from..).map(|(separator, before)| {
                 let off = before.abs_diff(half) as f64 / half as f64;
-                Cut { axis, before, cost: f64::from(separator) * (1.0 + CROOKED * off * off) }
+                AxisCut { axis, before, cost: f64::from(separator) * (1.0 + CROOKED * off * off) }
             });
         // The nodes before the first of them share a rank.
         let best = cuts.skip(1).min_by(|a, b| a.cost.total_cmp(&b.cost));
-        best.unwrap_or(Cut { axis, before: half, cost: f64::INFINITY })
+        best.unwrap_or(AxisCut { axis, before: half, cost: f64::INFINITY })
     }
 
     /// The size of the smaller separator of each cut with `from` to `to` nodes before it.

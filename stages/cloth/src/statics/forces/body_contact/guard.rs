@@ -8,9 +8,7 @@
 use super::BodyContact;
 use crate::contact::collision_surface::CollisionSurface;
 use crate::statics::forces::distance_query::NUDGE;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// Share of the offset that a move leaves between a node and the body.
 const GUARD: f64 = 0.5;

@@ -2,9 +2,7 @@
 
 use super::BodyContact;
 use crate::statics::forces::distance_query::ContactQuery;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 impl BodyContact {
     /// Increases the offsets of nodes in contact where the edges between them would dip into a

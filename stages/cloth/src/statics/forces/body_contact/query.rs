@@ -3,9 +3,7 @@
 use super::BodyContact;
 use crate::contact::collision_surface::CollisionSurface;
 use crate::statics::forces::distance_query::{ContactQuery, DistanceCache, NEAR};
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 impl BodyContact {
     /// Queries the body for each node. Cached distances save the search, or narrow it.

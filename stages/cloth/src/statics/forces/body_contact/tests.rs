@@ -6,10 +6,8 @@ use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::testing::on_its_body;
 use crate::statics::newton::to_rest::{NewtonOptions, Proof, relax};
-use nalgebra::Vector3;
 use std::ops::ControlFlow;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// A square on top of a ball, its middle pressed down as by the weight of much cloth, brought to
 /// rest.

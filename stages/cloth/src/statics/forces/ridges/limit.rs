@@ -7,13 +7,10 @@
 //!
 //! Cost: one collision test per pair and round.
 
-use super::{Pair, Ridges};
-use nalgebra::Vector3;
+use super::{RidgePair, Ridges};
 use rayon::prelude::*;
-use toile_geometry::ccd::impact;
 use toile_geometry::pair;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, ccd::impact};
 
 /// Rounds in which cloth gives way, and in which moves are shortened node by node.
 const ROUNDS: usize = 4;
@@ -49,7 +46,7 @@ impl Ridges {
         pushed
     }
 
-    fn push(&self, pair: &Pair, x: &[Vec3], moves: &mut [Vec3], held: &[bool], pushed: &mut [bool]) {
+    fn push(&self, pair: &RidgePair, x: &[Vec3], moves: &mut [Vec3], held: &[bool], pushed: &mut [bool]) {
         let near = pair.near(&self.sharp, x);
         let normal = near.off / near.distance;
         let own = || (0..pair.count()).map(|k| (pair.nodes[k] as usize, near.weights[k]));
@@ -90,8 +87,8 @@ impl Ridges {
     }
 
     /// The pairs that would collide, and their times of impact.
-    fn impacts(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(Pair, f64)> {
-        let hit = |p: &Pair| {
+    fn impacts(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(RidgePair, f64)> {
+        let hit = |p: &RidgePair| {
             if self.is_free(p) {
                 return None;
             }
@@ -112,7 +109,7 @@ impl Ridges {
 
     /// Whether the body passes through the cloth of a pair: that cloth must pass features to get
     /// out.
-    fn is_free(&self, pair: &Pair) -> bool {
+    fn is_free(&self, pair: &RidgePair) -> bool {
         self.pierced.iter().any(|p| {
             let shared = p.nodes[..p.count()].iter().filter(|i| pair.nodes.contains(i)).count();
             shared >= 2 || p.feature == pair.feature && shared > 0

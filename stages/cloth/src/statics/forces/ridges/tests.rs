@@ -5,9 +5,7 @@ use crate::statics::forces::force::{Force, Place};
 use crate::statics::forces::ridges::Ridges;
 use crate::statics::forces::system::System;
 use crate::statics::levels::testing::on_its_body;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::Vec3;
 
 /// A sheet of 1 m, three cells a side, none of its vertices over the blade of 2 mm that stands
 /// below its middle; its height is a plane's.

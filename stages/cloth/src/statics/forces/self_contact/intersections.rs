@@ -6,12 +6,9 @@
 
 use super::{Contact, SelfContact};
 use crate::statics::forces::contact_potential::ContactPotential;
-use nalgebra::Vector3;
 use rayon::prelude::*;
-use toile_geometry::closest::on_triangle;
 use toile_geometry::pair::Pair;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, closest::on_triangle};
 
 /// Share of the thickness below which a pair counts as merged; under its own weight cloth keeps a
 /// tenth and more.

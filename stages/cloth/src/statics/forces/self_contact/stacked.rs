@@ -7,10 +7,10 @@
 //! Outside stacks contacts fade only at the very ends of edges.
 
 use super::SelfContact;
-use nalgebra::Vector3;
-use toile_geometry::pair::{Closest, Kind, Pair};
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{
+    Vec3,
+    pair::{Closest, Kind, Pair},
+};
 
 /// Least distance that a node may move before pairs are sought anew, in thicknesses.
 const SLACK: f64 = 1.5;

@@ -1,13 +1,13 @@
 //! Which vertices a coarser level keeps: a maximal independent set, corners and pins first, then
 //! outlines, then the inside. Cost: O(n).
 
-use super::{Mesh, Pieces};
+use super::{CoarseningMesh, Pieces};
 
 /// Cosine of the turn of an outline above which a vertex is a corner: 20 degrees.
 const CORNER_COSINE: f64 = 0.94;
 
 /// Which sewn points are kept: no two of them neighbours, except those that must be.
-pub(super) fn independent(fine: &Pieces, mesh: &Mesh) -> Vec<bool> {
+pub(super) fn independent(fine: &Pieces, mesh: &CoarseningMesh) -> Vec<bool> {
     let must: Vec<bool> = (0..fine.points).map(|p| must_keep(p, fine, mesh)).collect();
     let mut keep = must.clone();
     let mut near = vec![false; fine.points];
@@ -29,7 +29,7 @@ pub(super) fn independent(fine: &Pieces, mesh: &Mesh) -> Vec<bool> {
 }
 
 /// The points of the outlines in their order along them, so that every second one is kept.
-fn outline_order(fine: &Pieces, mesh: &Mesh, must: &[bool]) -> Vec<usize> {
+fn outline_order(fine: &Pieces, mesh: &CoarseningMesh, must: &[bool]) -> Vec<usize> {
     let mut seen = vec![false; fine.points];
     let mut order = Vec::new();
     let starts = (0..fine.rest.len()).filter(|&v| mesh.on_outline[v]);
@@ -52,7 +52,7 @@ fn outline_order(fine: &Pieces, mesh: &Mesh, must: &[bool]) -> Vec<usize> {
     order
 }
 
-fn must_keep(p: usize, fine: &Pieces, mesh: &Mesh) -> bool {
+fn must_keep(p: usize, fine: &Pieces, mesh: &CoarseningMesh) -> bool {
     let sewn = |v: u32| mesh.members[fine.point[v as usize] as usize].len();
     mesh.members[p].iter().any(|&v| {
         let i = v as usize;

@@ -7,13 +7,13 @@ use nalgebra::Vector2;
 use std::collections::BTreeMap;
 
 /// Finds the coarse triangle that a fine vertex lies in.
-pub(super) struct Locator<'a> {
+pub(super) struct CoarseLocator<'a> {
     pieces: &'a Pieces,
     cell: f64,
     cells: BTreeMap<(u32, i64, i64), Vec<u32>>,
 }
 
-impl<'a> Locator<'a> {
+impl<'a> CoarseLocator<'a> {
     pub(super) fn new(pieces: &'a Pieces) -> Self {
         let area: f64 = pieces
             .triangles

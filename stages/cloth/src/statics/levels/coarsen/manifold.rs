@@ -5,12 +5,12 @@
 //! a collapse (the link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999, for the sewn
 //! sheet). Cost: that of the triangles around two points.
 
-use super::{Mesh, Pieces};
+use super::{CoarseningMesh, Pieces};
 
 /// Greatest number of triangles at an edge, unless a seam joins more sheets.
 const MOST: usize = 2;
 
-impl Mesh {
+impl CoarseningMesh {
     /// Whether the edges of the sewn sheet have at most two triangles after the collapses `moves`,
     /// or as many as an edge there had before, for a seam of three sheets is coarsened as one.
     pub(super) fn stays_manifold(&self, moves: &[[u32; 2]], fine: &Pieces) -> bool {

@@ -11,11 +11,8 @@
 
 use super::StartError;
 use crate::scene::{Scene, Seam};
-use nalgebra::Vector3;
 use std::collections::BTreeMap;
-use toile_geometry::components::groups;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, components::groups};
 
 /// Least ratio of the thread lengths of a reversed seam to those of the opposite order. A flat band
 /// that is sewn with a twist has at most 1.06.

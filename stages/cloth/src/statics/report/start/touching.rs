@@ -9,9 +9,7 @@ use crate::statics::levels::pieces::Pieces;
 use crate::statics::report::words;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
-use toile_geometry::cloth_tree::ClothTree;
-
-type Vec3 = Vector3<f64>;
+use toile_geometry::{Vec3, cloth_tree::ClothTree};
 
 /// Share of a panel's area that may lie in cloth at the start: panels that touch along a line or
 /// overlap a little can be separated.

@@ -104,7 +104,7 @@ impl Fit {
     /// How far the outline strays from the sleeves or legs of each side: the mean distance of their
     /// points, metres.
     pub(crate) fn astray(&self, upright: &Upright, form: &Form) -> [f64; 2] {
-        let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
+        let m = TemplateModel { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
         let mut sums = [(0.0, 0.0); 2];
         for p in &upright.points {
             let (side, edge, _, off) = nearest(&m, *p);
@@ -119,7 +119,7 @@ impl Fit {
     /// The share of the outline's points on a side that lie nearer to the template than `reach`,
     /// metres.
     pub(crate) fn near(&self, upright: &Upright, side: usize, reach: f64) -> f64 {
-        let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
+        let m = TemplateModel { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
         let (mut near, mut all) = (0.0, 0.0);
         for off in upright.points.iter().map(|p| nearest(&m, *p)).filter(|n| n.0 == side).map(|n| n.3.norm())
         {
@@ -181,7 +181,7 @@ fn better(upright: &Upright, form: &Form, cuts: &[Option<Cut>; 2], points: f64) 
 }
 
 /// Where a point of the outline, or a place of the template, is drawn to.
-struct Pair {
+struct FitPair {
     side: usize,
     edge: usize,
     t: f64,
@@ -201,13 +201,13 @@ struct Problem<'a> {
 }
 
 /// The template of a vector of parameters.
-struct Model {
+struct TemplateModel {
     sides: [Vec<Bow>; 2],
     turn: f64,
     shift: f64,
 }
 
-impl Model {
+impl TemplateModel {
     /// A point of the upright outline in the frame of the axis, seen from a side.
     fn seen(&self, p: Point2, side: usize) -> Point2 {
         let q = Rotation2::new(-self.turn) * p;
@@ -252,7 +252,7 @@ impl<'a> Problem<'a> {
     }
 
     /// What is drawn to what; far points count less.
-    fn pairs(&self, m: &Model, far: f64) -> Vec<Pair> {
+    fn pairs(&self, m: &TemplateModel, far: f64) -> Vec<FitPair> {
         let trust = |r: f64| 1.0 / (1.0 + (r / (far * self.spread)).powi(2));
         let mut pairs = Vec::new();
         for (p, unseen) in self.upright.points.iter().zip(&self.upright.unseen) {
@@ -260,7 +260,7 @@ impl<'a> Problem<'a> {
             let on = &m.sides[side][edge];
             let along = unit(off, on.direction(t));
             let weight = if *unseen { 0.0 } else { trust(off.norm()) };
-            pairs.push(Pair { side, edge, t, point: *p, along, weight });
+            pairs.push(FitPair { side, edge, t, point: *p, along, weight });
         }
         for (side, edges) in m.sides.iter().enumerate() {
             let outline: Vec<Point2> = self.upright.points.iter().map(|p| m.seen(*p, side)).collect();
@@ -274,7 +274,7 @@ impl<'a> Problem<'a> {
                     let (point, along) = (on(&self.upright.points), unit(off, bow.direction(t)));
                     let unseen = self.unseen(i);
                     let weight = if unseen { 0.0 } else { PULL * trust(off.norm()) };
-                    pairs.push(Pair { side, edge, t, point, along, weight });
+                    pairs.push(FitPair { side, edge, t, point, along, weight });
                 }
             }
         }
@@ -288,9 +288,9 @@ impl<'a> Problem<'a> {
     }
 
     /// What is left over, weighted.
-    fn rest(&self, at: &DVector<f64>, pairs: &[Pair]) -> DVector<f64> {
+    fn rest(&self, at: &DVector<f64>, pairs: &[FitPair]) -> DVector<f64> {
         let m = model(self.form, at);
-        let of = |p: &Pair| {
+        let of = |p: &FitPair| {
             let off = m.seen(p.point, p.side) - m.sides[p.side][p.edge].at(p.t);
             p.weight * off.dot(&p.along) / self.spread
         };
@@ -314,7 +314,7 @@ impl<'a> Problem<'a> {
         DVector::from_vec(all)
     }
 
-    fn slopes(&self, pairs: &[Pair], before: &DVector<f64>) -> DMatrix<f64> {
+    fn slopes(&self, pairs: &[FitPair], before: &DVector<f64>) -> DMatrix<f64> {
         let mut slopes = DMatrix::zeros(before.len(), self.at.len());
         for k in 0..self.at.len() {
             let mut moved = self.at.clone();
@@ -346,7 +346,7 @@ impl<'a> Problem<'a> {
             pull += (off.norm() / self.spread).powi(2).min(MOST);
             n += 1.0;
         }
-        let Model { sides, turn, shift } = m;
+        let TemplateModel { sides, turn, shift } = m;
         let score = sum / count + pull / f64::max(n, 1.0);
         Fit { sides, turn, shift, misses, score, judged: self.judged }
     }
@@ -360,7 +360,7 @@ fn unit(off: Vector2, direction: Vector2) -> Vector2 {
 
 /// Side, edge and parameter of the template's place nearest to a point, and the way from it to the
 /// point.
-fn nearest(m: &Model, p: Point2) -> (usize, usize, f64, Vector2) {
+fn nearest(m: &TemplateModel, p: Point2) -> (usize, usize, f64, Vector2) {
     let mut best = (0, 0, 0.0, Vector2::repeat(f64::INFINITY));
     for (side, edges) in m.sides.iter().enumerate() {
         let q = m.seen(p, side);
@@ -413,7 +413,7 @@ fn packed(form: &Form, sides: [&[Bow]; 2]) -> DVector<f64> {
     DVector::from_vec(at)
 }
 
-fn model(form: &Form, at: &DVector<f64>) -> Model {
+fn model(form: &Form, at: &DVector<f64>) -> TemplateModel {
     let last = form.edges.len() - 1;
     let mut numbers = at.iter().skip(4).copied();
     let mut two = || [0, 1].map(|_| numbers.next().unwrap_or(0.0));
@@ -426,5 +426,5 @@ fn model(form: &Form, at: &DVector<f64>) -> Model {
         };
         (0..=last).map(edge).collect()
     });
-    Model { sides, turn: at[0], shift: at[1] }
+    TemplateModel { sides, turn: at[0], shift: at[1] }
 }
