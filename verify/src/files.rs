@@ -130,7 +130,7 @@ impl FileReader {
             Some("dxf") => DxfPattern { file, seams, ..DxfPattern::default() }.run(&cx)?.0,
             Some("svg") => SvgPattern { file, seams, ..SvgPattern::default() }.run(&cx)?.0,
             _ => {
-                let what = format!("\"{file}\" is no pattern by its name");
+                let what = format!("\"{file}\" is not a .json, .dxf or .svg file");
                 return Err(
                     unreadable(what).hint("name a pattern of GarmentCode (.json), a .dxf or an .svg file")
                 );

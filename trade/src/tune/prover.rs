@@ -82,7 +82,7 @@ impl Prover<'_> {
             format!("; the garment has several states of rest, and moved starts of the reference differ by up to {p:.2} mm")
         });
         StageError::new(ErrorCode::StaticEquilibrium, message)
-            .hint(format!("ask for a little more than is needed, or give `toile trade` more time{rest}"))
+            .hint(format!("ask for a slightly lower limit, or give `toile trade` more time{rest}"))
     }
 
     /// The garment of the reference, from the cache of the measurement where it is still there.

@@ -163,7 +163,7 @@ struct OverrideWalk<'a> {
 }
 
 impl OverrideWalk<'_> {
-    /// The first segment: a field of the file.
+    /// The edit for a path whose first segment is a field of the file.
     fn top(&self, tree: &ValueTree, sections: &[Draft], stages: &[Draft]) -> Result<Edit, Fault> {
         let field = self.segments.first().copied().unwrap_or("");
         let known = read::top_level(self.registry);
@@ -232,7 +232,7 @@ impl OverrideWalk<'_> {
             None if i + 1 == self.segments.len() => Ok(Edit::insert(*inside, entries, field, self.value)),
             None => {
                 let whole = self.segments[..=i].join(".");
-                let fault = self.fault(i, format!("the file gives no `{field}` to change a part of"));
+                let fault = self.fault(i, format!("the file has no `{field}`"));
                 Err(fault.hint(format!("set all of it: `{}`", self.given.written(&whole, "..."))))
             }
         }
