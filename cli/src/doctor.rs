@@ -47,7 +47,7 @@ enum ContractFinding {
     Kept(usize),
     /// It was broken.
     Broken(String),
-    /// The suite cannot tell.
+    /// No case of the suite could test it.
     Untried,
 }
 

@@ -118,8 +118,8 @@ fn clear(dir: &Path) {
     }
 }
 
-/// Says of the quality that is asked for if its claim was not measured for the pipeline as it is;
-/// so do metrics and report, but where they say already that `--set` changed it.
+/// Warns if the requested quality's error was not measured for the pipeline as it is. The metrics
+/// and the report say the same, unless they already say that `--set` changed the quality.
 fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>) {
     let asked = args.overrides.quality.as_deref();
     let quality = pipeline.qualities.iter().find(|q| Some(q.name.as_str()) == asked);
@@ -134,7 +134,7 @@ fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>
     }
 }
 
-/// Runs with a progress line; tells the notes and warnings of the stages, then the warnings of the
+/// Runs with a progress line; prints the notes and warnings of the stages, then the warnings of the
 /// cache.
 fn under_a_bar(
     pipeline: &Pipeline,

@@ -43,7 +43,7 @@ impl Cancel {
     }
 }
 
-/// What a stage tells while it works.
+/// What a stage reports while it works.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
     /// How far the stage has come, 0 to 1, and what it is at.
@@ -53,7 +53,7 @@ pub enum Event {
         /// What it is at: `seam gap 3.2 mm, energy 0.41 J`.
         text: String,
     },
-    /// What was decided, for a user who wants to know.
+    /// A decision and the fact behind it.
     Note(String),
     /// Something that the user should look at.
     Warning(String),
@@ -232,21 +232,22 @@ impl Context {
         &self.cancel
     }
 
-    /// Tells how far the stage has come.
+    /// Reports how far the stage has come: the share done, 0 to 1, and what it is doing.
     pub fn progress(&self, share: f64, text: impl Into<String>) {
         let event = Event::Progress { share: share.clamp(0.0, 1.0), text: text.into() };
         self.listener.event(&self.stage, &self.entry, &event);
     }
 
-    /// Tells what was decided, and by what fact: "the front is taken for a T-shirt". It stands in
-    /// the report, and in the terminal where the user asks for more.
+    /// Reports a decision and the fact behind it: "the front is taken for a T-shirt". The note is
+    /// in the report, and in the terminal with `--verbose`.
     pub fn note(&self, text: impl Into<String>) {
         let text = text.into();
         self.listener.event(&self.stage, &self.entry, &Event::Note(text.clone()));
         self.remarks().notes.push(text);
     }
 
-    /// Tells what the user should look at. It stands in the terminal and in the report.
+    /// Warns of something that the user should look at. The warning is in the terminal and in the
+    /// report.
     pub fn warn(&self, text: impl Into<String>) {
         let text = text.into();
         self.listener.event(&self.stage, &self.entry, &Event::Warning(text.clone()));

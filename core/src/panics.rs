@@ -47,7 +47,7 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
 /// What a panic says, and where it was where that is remembered.
 pub fn words(payload: Box<dyn Any + Send>) -> String {
     let text = said(payload.as_ref()).unwrap_or_default();
-    // Dropping a payload may panic again, and then nothing could be told at all.
+    // Dropping a payload may panic again, and then nothing could be reported.
     std::mem::forget(payload);
     let places = PLACES.lock().unwrap_or_else(PoisonError::into_inner);
     match places.iter().find(|(what, _)| *what == text) {

@@ -1,4 +1,4 @@
-//! What a stage tells the user beside its result.
+//! Notes and warnings that a stage gives the user beside its result.
 
 use serde::{Deserialize, Serialize};
 

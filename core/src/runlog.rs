@@ -18,15 +18,16 @@ pub struct StageRecord {
     pub params: String,
     /// Wall time, seconds.
     pub wall_s: f64,
-    /// What it made; of a run that a stage reports on, without services such as a collider.
+    /// What it made. In the log that a reporting stage reads, services such as a collider are left
+    /// out.
     pub outputs: Vec<PortValue>,
     /// Figures that the stage gave through its context.
     pub figures: Vec<Measure>,
-    /// What the stage told through its context.
+    /// Notes and warnings that the stage gave through its context.
     pub remarks: Remarks,
-    /// What its own work took, where it ran whole and somebody measured.
+    /// What its own work took; none where it did not run to its end or nothing measured it.
     pub used: Option<Used>,
-    /// What it was expected to take, where that was asked.
+    /// What it was expected to take; none where no prediction was requested.
     pub predicted: Option<Predicted>,
 }
 

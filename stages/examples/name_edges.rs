@@ -1,4 +1,4 @@
-//! Carries real photos to named outlines and draws them.
+//! Makes named outlines from real photos and draws them.
 //!
 //!     TOILE_SHARED=... cargo run --release -p toile-stages --example name_edges [OUT_DIR] [NAME]...
 //!
@@ -70,7 +70,8 @@ fn outlined(file: &Path) -> Result<(Photo, Arc<dyn Artifact>, String), String> {
     Ok((typed(&photo)?, outline, seconds))
 }
 
-/// Names the edges by the likelier style first; the other's reason is told as well where none fits.
+/// Names the edges by the likelier style first; where none fits, the other's reason is printed as
+/// well.
 fn named(outline: &Arc<dyn Artifact>, tee: bool) -> Result<(Outline, String), String> {
     let mut styles: [(&str, Box<dyn Stage>); 2] =
         [("vest", Box::new(Vest {})), ("T-shirt", Box::new(TShirt {}))];

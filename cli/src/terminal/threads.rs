@@ -8,8 +8,8 @@ use std::num::NonZero;
 /// Threads, where there are some.
 pub(crate) type Pool = Result<ThreadPool, ThreadPoolBuildError>;
 
-/// A pool of threads for work of the present thread; what is asked for beyond the machine's cores,
-/// and what the system does not give, is told.
+/// A pool of threads for work of the present thread. Warns if more threads are requested than the
+/// machine has cores, or than the system gives.
 ///
 /// More threads than cores only wait for each other. Where the system starts no thread at all, the
 /// present one does the work.
@@ -43,8 +43,8 @@ pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// A pool of threads for work of the present thread on a machine of so many cores, and what is to
-/// be told of it.
+/// A pool of threads for work of the present thread on a machine of so many cores, and the warnings
+/// about it.
 pub(crate) fn pool_of(asked: Option<u16>, cores: usize) -> (Pool, Vec<String>) {
     let mut told = Vec::new();
     let most = asked.map_or(cores, usize::from);

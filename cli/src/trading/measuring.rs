@@ -37,8 +37,8 @@ pub(crate) fn opened<'a>(
     Ok((source, pipeline))
 }
 
-/// Asks the stages that will run what is wrong with their parameters and files: a measurement would
-/// tell it of its first run alone.
+/// Checks the parameters and files of the stages that will run: a measurement would report their
+/// faults of its first run only.
 pub(crate) fn inspected(
     pipeline: &Pipeline,
     until: Option<String>,

@@ -75,8 +75,8 @@ pub struct SolveStatus {
     /// the solver's last look.
     pub max_speed: f64,
     /// For each panel the share of it that is still in its place on the body, after all solvers: 1
-    /// less the way that its upper edge has sunk, as a share of its size. Empty where nothing told:
-    /// no body, no weight.
+    /// minus the distance that its upper edge has sunk, as a share of its size. Empty where it was
+    /// not measured: no body, no weight.
     pub on_body: Vec<f64>,
     /// How friction holds it, for a solver that goes on from there.
     pub held: Held,

@@ -64,7 +64,7 @@ pub fn under_way() -> Vec<String> {
     LONG.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|(_, words)| words.clone()).collect()
 }
 
-/// Says what a program is told when a plugin ends it, and the exit code that it is to have.
+/// Prints which plugin ends the program, and returns the exit code of the program.
 pub type LastWords = fn(&str) -> c_int;
 
 static LAST_WORDS: OnceLock<LastWords> = OnceLock::new();

@@ -1,5 +1,5 @@
-//! Pictures that cross the border without a copy: they stay where they were made, and whoever made
-//! them is told when the other side needs them no more.
+//! Pictures that pass between program and plugin without a copy: they stay in the memory of their
+//! maker, which is notified when the other side no longer needs them.
 
 use super::abi;
 use crate::artifact::store::{KeptBytes, Lend};

@@ -168,7 +168,7 @@ unsafe extern "C" fn check<S: StageType>(
     abi::FAILED
 }
 
-/// The inside of an entry point: what it says or panics is told to the program.
+/// Runs the body of an entry point, and passes its error or panic to the program.
 fn entry(host: *const abi::Host, work: impl FnOnce() -> Result<(), StageError>) -> i32 {
     let failed = |e: &StageError| {
         tell(host, e.code.as_str(), &e.message, e.hint.as_deref().unwrap_or(""), e.param.unwrap_or(""));

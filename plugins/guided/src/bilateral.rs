@@ -16,7 +16,7 @@ const PLACE: f64 = 1.5;
 const COLOUR: f64 = 3.0;
 /// Greatest squared distance of two colours.
 const FARTHEST: usize = 3 * 255 * 255;
-/// Squared distances share an entry of the table by this many.
+/// This many consecutive squared distances share one entry of the table.
 const STEP: usize = 16;
 
 /// The smoothed rows of a photo, channels side by side.

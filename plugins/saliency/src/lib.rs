@@ -27,7 +27,7 @@ use toile_core::prelude::*;
 /// One more voice for `Auto()`, which takes the mask of a binariser before it. The network knows
 /// objects, not garments: prints, cloth of two colours and patterned grounds mislead it less than
 /// they mislead methods of colour, but it may leave out a sleeve, and takes a hanger in. Its
-/// weights are a file of 4.6 MB that is not part of the program; plugins/saliency/README.md tells
+/// weights are a file of 4.6 MB that is not part of the program; plugins/saliency/README.md says
 /// where it comes from. Holes are filled; transparent pixels are ground. A photo in which it sees
 /// nothing gives an empty mask and a warning. Takes about 0.7 s a photo.
 #[stage(

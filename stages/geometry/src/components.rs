@@ -1,4 +1,4 @@
-//! What hangs together: connected components by union-find (Galler, Fischer 1964).
+//! Connected components by union-find (Galler, Fischer 1964).
 //!
 //! Cost: nearly linear in the pairs.
 

@@ -72,7 +72,7 @@ pub enum ScaleError {
         /// Growth of the spacing from one end to the other, percent.
         percent: f64,
     },
-    /// The marks of a ruler have too few pixels to be told.
+    /// The marks of a ruler have too few pixels to be recognised.
     #[error(
         "the marks of the ruler at ({:.0}, {:.0}) are {apart:.1} px apart, {least:.0} are needed; go nearer or use a photo of more pixels",
         .place[0], .place[1]

@@ -230,8 +230,9 @@ fn meeting(one: &Segment, end: usize, two: &Segment, e: usize) -> Option<Segment
     Some(SegmentMeeting { at, away: -outward(v, e), reach, gap: gaps[0] + gaps[1] - 0.3 * l2.min(l1) })
 }
 
-/// How far a crossing lies from an end: outside of the segment by nine tenths of it, inside by a
-/// quarter.
+/// The distance of a crossing from an end, pixels. `None` where it lies outside of the segment by
+/// more than nine tenths of the length, or inside by more than a quarter of it, a few pixels added
+/// to both.
 fn gap(at: Point2<f64>, end: Point2<f64>, outward: Vector2<f64>, length: f64) -> Option<f64> {
     let t = outward.dot(&(at - end));
     let allowed = if t > 0.0 { 0.9 * length + 4.0 } else { 0.25 * length + 2.0 };

@@ -137,7 +137,7 @@ fn slopes(
 /// End offsets of the line that most peaks are near, steps.
 fn vote(peaks: &[Peak], look: &SideSampling, count: usize) -> Option<(f64, f64)> {
     let reach = 2 * look.reach as isize;
-    // A quarter of the profiles tells the line; the fit uses all of them.
+    // A quarter of the profiles suffices to find the line; the fit uses all of them.
     let every = (count / 32).max(1);
     let few: Vec<Peak> = thin(peaks, every);
     let strong = median(few.iter().map(|p| p.slope).collect())?;

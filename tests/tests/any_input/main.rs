@@ -109,7 +109,8 @@ fn trial(card: &Card, stage: &dyn Stage, edits: &[Edit]) -> Result<bool, String>
 fn every_stage_answers_or_refuses_whatever_it_is_given() {
     let mut failures = Vec::new();
     for (card, stage) in stages() {
-        // With --nocapture it tells which stage ends the process, should one run out of memory.
+        // With --nocapture this line names the stage that ended the process, should one run out of
+        // memory.
         eprintln!("{} ({})", card.name, card.role.as_str());
         let edits = prop::collection::vec(any::<Edit>(), 0..4);
         let edited = Cell::new(0);
@@ -123,7 +124,7 @@ fn every_stage_answers_or_refuses_whatever_it_is_given() {
             })
         };
         let mut outcome = tried(cases());
-        // Some stages take little of what is edited.
+        // Some stages refuse most edited inputs and need more cases.
         if outcome.is_ok() && edited.get() == 0 {
             outcome = tried(cases() * MORE);
         }

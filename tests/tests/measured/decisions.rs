@@ -1,5 +1,5 @@
-//! What pipelines leave out by facts of their scene: `toile explain` tells it,
-//! `toile trade --ablate` turns it round.
+//! What pipelines leave out by facts of their scene: `toile explain` lists it, `toile trade
+//! --ablate` reverses it.
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
 use serde_json::Value;
@@ -188,7 +188,7 @@ fn each_decision_is_turned_round_and_held_to_its_tolerance() {
     assert!(both.err.contains("'--ablate' cannot be used with '--knob <KEY=VALUES>'"), "{}", both.err);
 }
 
-/// What each decision of a pipeline saves, as `explain --json` tells it.
+/// What each decision of a pipeline saves, as `explain --json` gives it.
 fn savings(arguments: &[&str]) -> Vec<Value> {
     let answer = toile(&[&["explain", "--json"], arguments].concat());
     assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);

@@ -106,7 +106,7 @@ fn each_slip_is_one_fault_at_its_place_with_the_name_that_was_meant() {
     for name in PIPELINES {
         let whole = fs::read_to_string(pipeline(name)).unwrap();
         assert_eq!(validated(&whole, dir.path()), (0, Vec::new()), "{name}");
-        // The head of a file is comments, which tell how it is run.
+        // The head of a file is comments, which say how to run it.
         let head = whole.find("\n(\n").unwrap();
         for (i, (right, slip, message, hint)) in SLIPS.iter().enumerate() {
             let Some(at) = whole[head..].find(right).map(|at| head + at) else { continue };

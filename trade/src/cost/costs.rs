@@ -92,8 +92,8 @@ impl Costs {
         self.made.get(key)
     }
 
-    /// What the rules foresee at a stage, corrected by how far they were off in earlier runs;
-    /// `style` as in the records.
+    /// The rules' estimate for a stage, corrected by how far they were off in earlier runs; `style`
+    /// as in the records.
     pub fn corrected(&self, stage: &str, style: &str, foreseen: &Size) -> Size {
         let bias = self.bias.get_or_init(|| Bias::learn(self.own.iter().chain(&self.shipped)));
         bias.corrected(stage, style, foreseen)

@@ -135,7 +135,7 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
     }
 
     /// The record of an earlier session, as [`Journal::open`]; what is put aside and what is left
-    /// out of it is told.
+    /// out of it is reported.
     pub(crate) fn taken_up(
         folder: &Path,
         kind: JournalKind,

@@ -71,8 +71,8 @@ impl Floor {
 }
 
 impl Reference {
-    /// How well it is known; none where neither its levels nor moved starts tell. Of a reference of
-    /// one level nothing is known, however well its moved starts agree: the floor is infinite.
+    /// How well it is known; none where neither its levels nor moved starts show it. Of a reference
+    /// of one level nothing is known, however well its moved starts agree: the floor is infinite.
     pub fn floor(&self) -> Option<Floor> {
         if self.levels.len() == 1 {
             return Some(Floor { mm: f64::INFINITY, by: FloorBasis::Nothing });

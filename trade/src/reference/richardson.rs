@@ -8,9 +8,9 @@
 //! number: of 2, 3 and 4 parts the second is 1.5 times finer than the first, the third 1.33 times
 //! than the second.
 //!
-//! Limits: with exactly two distances nothing tells an order from luck; with more, each of the last
-//! three must be smaller for its factor (over its logarithm) than the one before. Where they do not
-//! shrink there is no order, and nothing is claimed. An order above that of the method
+//! Limits: with exactly two distances an order cannot be distinguished from luck; with more, each
+//! of the last three must be smaller for its factor (over its logarithm) than the one before. Where
+//! they do not shrink there is no order, and nothing is claimed. An order above that of the method
 //! ([`FORMAL_ORDER`]) is luck as well, so what is missing is estimated with no more.
 
 /// Below this order a sequence is not said to converge: the estimate would be many times the last

@@ -15,7 +15,7 @@ const LOOK_AROUND: usize = 5;
 /// Settings without result after which a choice of stage is given up.
 const HOPELESS: usize = 2;
 /// Settings nearer than this to a measured one with the same choices, as a share of the knobs'
-/// ranges, tell nothing new.
+/// ranges, add nothing new.
 const LEAST_STEP: f64 = 0.03;
 /// Proposals that are looked at before there is said to be nothing new.
 const PROPOSALS: usize = 4000;

@@ -4,7 +4,7 @@ use super::Wish;
 use crate::errors::Millimetres;
 use crate::record::{Clock, Measured};
 
-/// A setting that was proved.
+/// A setting that was verified by fresh runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettingProof {
     /// The index of its point.

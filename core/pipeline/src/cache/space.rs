@@ -1,4 +1,4 @@
-//! How much room the cache takes, and making room.
+//! How much space the cache takes, and freeing space.
 //!
 //! What was used longest ago goes first; a file's modification time is its last use. A run at work
 //! that loses a file to pruning makes its content anew.

@@ -17,7 +17,7 @@ pub(super) const GENERIC: [&str; 2] = ["id", "from"];
 /// Top-level fields that are no sections.
 pub(super) const PLAIN: [&str; 4] = ["name", "stages", "plugins", "qualities"];
 
-/// The most elements of one list or map whose faults are told.
+/// The most elements of one list or map whose faults are reported.
 const MAX_ELEMENTS: usize = 20;
 
 /// The longest id: it becomes a folder's name.
@@ -426,7 +426,7 @@ impl PipelineReader<'_> {
         let args: Vec<String> = clean.map(|(k, v)| format!("{k}: {}", self.at(v))).collect();
         match self.registry.make(card, &format!("({})", args.join(", "))) {
             Ok(stage) => draft.stage = Some(stage),
-            // What is missing is the value whose fault is told.
+            // The missing value is one whose fault is already reported.
             Err(_) if !draft.wrong.is_empty() => {}
             Err(reason) => {
                 self.fault("bad_value", format!("`{}` cannot be made: {reason}", draft.name), &draft.place);

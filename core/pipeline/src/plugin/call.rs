@@ -16,7 +16,7 @@ use toile_core::{Arity, Cancel, OutPort, PortValue, StageError};
 /// What one call may claim: memory for outputs, bytes.
 pub const MAX_OUTPUT_BYTES: u64 = 4 << 30;
 
-/// What a plugin tells while it works; served by the thread that waits for it.
+/// What a plugin reports while it works; handled by the thread that waits for it.
 pub(super) enum Message {
     Progress(f64, String),
     Note(String),

@@ -36,8 +36,8 @@ const STACK: usize = 8 << 20;
 /// Runs of plugins' stages that are waited for.
 static WAITED_FOR: AtomicUsize = AtomicUsize::new(0);
 
-/// How long a program that asks everything to stop has to wait until it is told which plugin does
-/// not; nothing while no plugin is at work.
+/// How long a program that asks everything to stop waits before the plugin that does not stop is
+/// named; zero while no plugin runs.
 pub fn patience() -> Duration {
     if WAITED_FOR.load(Ordering::SeqCst) > 0 { GRACE } else { Duration::ZERO }
 }
@@ -296,13 +296,13 @@ impl Stage for ForeignStage {
                 let _inside = long(plugin, &stage);
                 object.run(&own, &inputs, &names)
             };
-            // Nothing of the plugin's may be freed by this thread after the program was told.
+            // This thread must free all that is the plugin's before it reports that it is done.
             drop((object, inputs));
             own.tell_done(status);
         };
         let thread =
             std::thread::Builder::new().name(self.card.name.to_owned()).stack_size(STACK).spawn(work);
-        thread.map_err(|e| StageError::internal(format!("there is no thread for a plugin: {e}")))?;
+        thread.map_err(|e| StageError::internal(format!("cannot start a thread for a plugin: {e}")))?;
         let status = self.serve(&messages, cx)?;
         of.done(status, &call)?;
         call.outputs()
@@ -339,7 +339,7 @@ impl ForeignStage {
         let (of, name) = (self.object.of.library.words(), self.card.name);
         let message = format!("{of} did not stop within {} s of being asked", GRACE.as_secs());
         StageError::new(ErrorCode::Cancelled, message)
-            .hint(format!("its stage `{name}` does not ask often enough whether to stop; it was left behind"))
+            .hint(format!("its stage `{name}` does not check often enough whether to stop; it goes on working in the background"))
     }
 }
 

@@ -1,5 +1,5 @@
-//! The program's side of plugins: `first_bytes` tells what a file is that is none for this machine,
-//! `whole` looks whether a library is whole, `library` loads and checks a plugin,
+//! The program's side of plugins: `first_bytes` names what a file is that is no plugin for this
+//! machine, `whole` looks whether a library is whole, `library` loads and checks a plugin,
 //! `refused_by_system` words why the system does not load one, `loaded` keeps it, `card` reads its
 //! stages' cards, `foreign` is its stage behind the [`Stage`](toile_core::Stage) trait, `call` what
 //! the program offers during a call.

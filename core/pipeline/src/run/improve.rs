@@ -88,7 +88,7 @@ impl PipelineRun<'_> {
         self.steps.truncate(first);
     }
 
-    /// Tells what the steps from `first` on remarked, which ran unheard.
+    /// Reports the notes and warnings of the steps from `first` on, which ran without a listener.
     pub(super) fn tell_again(&self, first: usize) {
         for (step, node) in self.steps.iter().zip(&self.pipeline.nodes).skip(first) {
             let Some(RanStage { remarks: Remarks { notes, warnings }, .. }) = step.ran() else { continue };

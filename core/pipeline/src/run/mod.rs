@@ -34,12 +34,12 @@ use toile_core::RunLog;
 use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles};
 use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, Remarks, StageError, panics};
 
-/// What is asked of a run.
+/// Options of a run.
 #[derive(Debug, Clone, Default)]
 pub struct RunOptions {
     /// Stop after this stage (its id): only it and what it needs are run.
     pub until: Option<String>,
-    /// Stages (ids) that are run though nothing asked for depends on them.
+    /// Ids of stages that are run although no requested result depends on them.
     pub also: Vec<String>,
     /// Give every stage's artifacts as files as well.
     pub keep: bool,
@@ -47,11 +47,12 @@ pub struct RunOptions {
     pub cache: Option<Arc<Cache>>,
     /// Takes all files that stages read, or tried to, whether the run comes to its end or not.
     pub reads: Option<Reads>,
-    /// Takes what a run that fails has made until then, for a look.
+    /// Receives what a failed run had made until then, for inspection.
     pub so_far: Option<SoFar>,
     /// Measures what stages take; none measures nothing but wall time.
     pub meter: Option<Arc<dyn Meter>>,
-    /// Says what stages were expected to take, for the record and the report; none says nothing.
+    /// Predicts what stages take, for the record and the report; without it they hold no
+    /// prediction.
     pub expect: Option<Arc<dyn Expect>>,
 }
 

@@ -59,8 +59,8 @@ pub(super) struct PipelineRun<'a> {
     pub(super) meter: Option<&'a dyn Meter>,
     pub(super) expect: Option<&'a dyn Expect>,
     pub(super) steps: Vec<StageOutcome>,
-    /// Improving stages that pass on what they are given; the one that failed with what to tell the
-    /// user.
+    /// Improving stages that pass on what they are given; the one that failed with what to report
+    /// to the user.
     pub(super) undone: BTreeMap<usize, Option<String>>,
     /// What the stage that failed had come to.
     pub(super) so_far: Option<PortValue>,
@@ -156,7 +156,7 @@ impl PipelineRun<'_> {
         made.map(|made| (made, used)).map_err(|e| located(self.pipeline, node, e))
     }
 
-    /// Tells whoever asked which files were read.
+    /// Reports which files were read, where that is requested.
     pub(super) fn note_reads(&self, files: impl IntoIterator<Item = (String, Option<Digest>)>) {
         if let Some(reads) = self.reads {
             let full = files.into_iter().map(|(path, hash)| (self.pipeline.base.join(path), hash));

@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
         usize::try_from(count).map_err(|_| format!("`{name}` is {count}, which is too many"))
     }
 
-    /// A truth.
+    /// A boolean.
     pub fn flag(&self, name: &str) -> Result<bool, String> {
         Ok(self.one::<u8>(name)? != 0)
     }

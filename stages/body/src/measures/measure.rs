@@ -133,7 +133,7 @@ pub(crate) fn meshed(figure: &BodyFigure, mesh: &SkinMesh, marks: &NamedLandmark
     ])
 }
 
-/// Girths of upper arm and thigh, which are told only.
+/// Girths of upper arm and thigh, which are reported and not fitted.
 pub(crate) fn limbs(figure: &BodyFigure, mesh: &SkinMesh, marks: &NamedLandmarks) -> Option<[f64; 2]> {
     let (middle, along) = figure.upper_arm();
     let fork = marks.get("crotch")?.y;

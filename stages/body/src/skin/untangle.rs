@@ -14,8 +14,8 @@ const CELL: f64 = 0.012;
 /// Rounds of smoothing at most.
 const ROUNDS: usize = 12;
 
-/// Smooths the skin where it crosses itself. `fine` tells of a place whether parts thinner than a
-/// cell may lie there.
+/// Smooths the skin where it crosses itself. `fine` says whether parts thinner than a cell may lie
+/// at a place.
 pub(crate) fn untangle(
     positions: &mut [Point3],
     triangles: &[[u32; 3]],

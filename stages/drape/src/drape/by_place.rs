@@ -58,7 +58,7 @@ pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
     }
 }
 
-/// What is told of it, unless the file says otherwise.
+/// The decision that follows from the stage's place, unless the file sets the parameter.
 pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
     let is_written = |name: &str| known.node().params.contains_key(name);
     let (from, what, fact, name) = match origin(known.nodes, known.index)? {

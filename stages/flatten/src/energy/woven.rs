@@ -25,7 +25,7 @@ pub struct WovenStiffness {
 }
 
 impl WovenStiffness {
-    /// A plain cotton weave: shear gives forty times more easily than the threads.
+    /// A plain cotton weave: shear is forty times softer than the threads.
     pub const COTTON: Self = Self { warp: 800.0, weft: 800.0, shear: 20.0 };
 }
 
@@ -33,7 +33,7 @@ impl WovenStiffness {
 /// stiffest.
 const MOST_RATIO: f64 = 1e6;
 
-/// The energy of [`WovenStiffness`], its stiffest direction counted as 4.
+/// The energy of [`WovenStiffness`], scaled so that its stiffest direction has stiffness 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WovenEnergy {
     warp: f64,

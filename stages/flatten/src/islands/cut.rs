@@ -1,4 +1,4 @@
-//! Cutting: corners that stay together become vertices, triangles that hang together become pieces.
+//! Cutting: corners that stay together become vertices, connected triangles become pieces.
 
 use super::facing::inside_out;
 use super::seams::find_seams;

@@ -62,7 +62,7 @@ fn find_turns(triangles: &[[u32; 3]], opposite: &[u32]) -> Result<Vec<TriangleTu
     Ok(turns)
 }
 
-/// Decides about all triangles that hang together with `seed`.
+/// Decides about all triangles that are connected with `seed`.
 fn turn_neighbours(
     triangles: &[[u32; 3]],
     opposite: &[u32],

@@ -22,7 +22,7 @@ pub struct Meeting<'m, V, T> {
     /// Which parts and which things look for others; without it all do. Two of which neither looks
     /// are passed over.
     pub active: Option<(&'m [bool], &'m [bool])>,
-    /// Told of every two things whose volumes are within reach, the earlier one first.
+    /// Called with every two things whose volumes are within reach, the earlier one first.
     pub visit: &'m (dyn Fn(usize, usize, &mut Vec<T>) + Sync),
 }
 

@@ -6,8 +6,8 @@
 //! What is opaque in those is convex and the same turned by half; a garment is not both.
 //!
 //! Cost: two looks at every pixel's opacity, and the hull of the rows' ends (Andrew's monotone
-//! chain, 1979). Limits: a photo whose perspective was set right may be convex alone, as a skirt
-//! is; what is taken for a skirt is told.
+//! chain, 1979). Limits: a photo whose perspective was corrected may be merely convex, as a skirt
+//! is; a warning says what is taken for a skirt.
 
 use super::tone::{OPAQUE, mark, rim_share};
 use image::GrayImage;

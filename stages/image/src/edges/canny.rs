@@ -107,7 +107,7 @@ fn non_maximum_suppression(magnitude: &PicturePatch, gx: &PicturePatch, gy: &Pic
     PicturePatch { side, data }
 }
 
-/// Marks what is above `low` and hangs together (8 neighbours) with something above `high`.
+/// Marks what is above `low` and connected (8 neighbours) with something above `high`.
 fn hysteresis<'a>(band: &'a TileBand, thin: &BandPicture<'a>, low: f32, high: f32) -> BandPicture<'a> {
     let mut marked = band.blank();
     let mut todo: Vec<[usize; 2]> = Vec::new();

@@ -56,7 +56,7 @@ impl Photos {
                 PhotoEntry::File(file) => (look(name, &file.file, placed.cx).err(), None),
                 PhotoEntry::MirrorOf(other) => (None, self.photos.get(other)),
             };
-            // The faults of a file that is mirrored are told at that file.
+            // The faults of a file that is mirrored are reported at that file.
             let of_scale =
                 if let Some(PhotoEntry::File(_)) = target { None } else { resolve(&self.photos, name).err() };
             of_scale.into_iter().chain(own)

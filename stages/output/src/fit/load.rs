@@ -7,7 +7,7 @@
 //! tube around a cylinder it is Laplace's `p = T / r`. Source: Woven law of the cloth engine (see
 //! `docs/reference/solver.md`); Laplace 1806.
 //!
-//! Limits: bending is left out; weight is that of the Earth, whatever the solver was told; of
+//! Limits: bending is left out; weight is that on the Earth, whatever gravity the solver had; of
 //! layers that lie on each other each has its own pressure; cloth that is not at rest, or whose
 //! flat shape is not known, has no true figures.
 

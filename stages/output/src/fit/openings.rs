@@ -124,7 +124,7 @@ pub(super) fn finished(
 }
 
 /// Where the trunk is at an opening's height: under the waist's landmarks, or the opening's own
-/// middle where no body tells.
+/// middle where there is no body.
 fn centre(opening: &Opening, axis: f64, body: Option<&Body>) -> Point2 {
     let z =
         body.and_then(|b| Some((b.landmarks.get("waist_front")?.z + b.landmarks.get("waist_back")?.z) / 2.0));

@@ -40,7 +40,7 @@ pub(super) fn distinct<T>(folds: impl IntoIterator<Item = (Fold, T)>) -> Vec<(Fo
     out
 }
 
-/// What is told of a ring that lies open along two edges.
+/// The remark on a ring that lies open along two edges.
 pub(super) fn open_ring(piece: &str, [a, b]: &[String; 2]) -> String {
     format!(
         "piece \"{piece}\" is a ring when both its folds are unfolded: it is cut open along one, to be closed by a seam of \"{a}\" and \"{b}\""

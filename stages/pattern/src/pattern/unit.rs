@@ -22,8 +22,8 @@ pub enum DrawingUnit {
     Px,
 }
 
-/// The longest side of a garment's largest piece, metres; a file that says its unit is believed
-/// within these.
+/// The longest side of a garment's largest piece, metres; a unit that the file states is used if
+/// this size is within these.
 const WORN: (f64, f64) = (0.15, 5.0);
 /// And within these where nothing says it.
 const LIKELY: (f64, f64) = (0.25, 2.5);
@@ -100,7 +100,7 @@ pub(super) struct Taken {
 /// Who says a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum By {
-    /// A person, who is believed.
+    /// A person, whose unit is always used.
     Parameter,
     /// The file, by the name of a unit of length.
     File,

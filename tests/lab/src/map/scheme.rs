@@ -25,7 +25,7 @@ pub enum Scheme {
     Gradients,
     /// XPBD, one small step a time step.
     Xpbd,
-    /// Projective dynamics, 10 turns a time step.
+    /// Projective dynamics, 10 iterations per time step.
     Projective,
     /// Straight to rest: no time step.
     Rest,

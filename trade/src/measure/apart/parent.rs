@@ -30,7 +30,7 @@ impl Apart {
             self.start().map_err(|e| failed(format!("a run's own process cannot be started: {e}")))?;
         let (done, answer, words) =
             readers(&mut child).ok_or_else(|| failed("a process without output".into()))?;
-        // A process that is gone takes no task; what it said is told below.
+        // A process that is gone takes no task; its own message is reported below.
         let fed = send(&mut child, task);
         let ended = watch(&done, cancel, task.limit.map(|l| started + l));
         if ended.is_err() {

@@ -10,7 +10,7 @@ use crate::load::fault::Fault;
 use crate::load::syntax::parser::{Meant, SyntaxFault, TextRepairs, repaired};
 use crate::load::syntax::tree::ValueTree;
 
-/// The most faults of syntax that are told at once.
+/// The most faults of syntax that are reported at once.
 const MAX_SYNTAX: usize = 12;
 
 /// The longest text that is read on after a fault, bytes.

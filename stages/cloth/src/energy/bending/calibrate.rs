@@ -175,7 +175,7 @@ pub(super) fn calibrated(sheet: &Sheet, rigidities: &[Rigidity]) -> Vec<Matrix3<
     wanted
 }
 
-/// `D C D`, unless the correction is too large to be believed.
+/// `D C D`, unless the correction is too large to be plausible.
 fn correct(d: &Matrix3<f64>, compliance: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let root = d.diagonal().map(f64::sqrt);
     let excess = Matrix3::from_fn(|i, j| root[i] * compliance[(i, j)] * root[j]);
@@ -231,7 +231,7 @@ fn coupled_matrix(sheet: &Sheet, flaps: &[Flap], panels: &Panels, d: &[Matrix3<f
 
 impl Panels {
     /// Mean curvature (along x, along y, twist) of each panel under each unit moment; none for a
-    /// panel too small to tell.
+    /// panel too small to measure.
     fn answers(
         &self,
         sheet: &Sheet,

@@ -78,8 +78,8 @@ pub struct Outcome {
     pub share: f64,
     /// The step of pseudo-time, s.
     pub dt: f64,
-    /// Greatest speed gained in the last proof step, m/s: it tells how far from rest the cloth is.
-    /// `None` before the first one.
+    /// Greatest speed gained in the last proof step, m/s: a measure of how far from rest the cloth
+    /// is. `None` before the first one.
     pub gained: Option<f64>,
 }
 

@@ -19,7 +19,7 @@ use toile_core::{ErrorCode, StageError};
 pub(crate) use motion::Motions;
 pub(crate) use rest::{Rests, crossing};
 
-/// To whom and of what is told.
+/// What messages refer to: the garment, the body and the stage.
 #[derive(Clone, Copy)]
 pub(crate) struct MessageContext<'a> {
     /// Knows which panel a triangle belongs to.

@@ -1,4 +1,4 @@
-//! Why a garment does not come to rest.
+//! Messages about a garment that does not come to rest.
 
 use super::numbers::BEYOND_CLOTH;
 use super::{MessageContext, both, length, panel, seam, turn_round};
@@ -97,7 +97,7 @@ impl MessageContext<'_> {
         Self::error(code, message, error).hint(help)
     }
 
-    /// What is told of a garment that still moves, without the remedy; `of` is the panel with the
+    /// The message for a garment that still moves, without the remedy; `of` is the panel with the
     /// greatest force left over.
     fn unrest(&self, state: &Equilibrium, of: &str) -> String {
         let cause = match state.unbalanced.meets {

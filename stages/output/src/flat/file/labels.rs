@@ -23,12 +23,12 @@ pub enum PiecesBy {
     /// Edges that are marked as lines (`l`; in a GLB line primitives). A line may end inside a
     /// piece: a dart.
     Seams,
-    /// What hangs together by the file's own vertices.
+    /// Components connected by the file's own vertices.
     Parts,
 }
 
 impl PiecesBy {
-    /// What tells the pieces, in words.
+    /// What separates the pieces, in words.
     pub(in crate::flat) fn words(self) -> &'static str {
         match self {
             PiecesBy::Auto | PiecesBy::Parts => "the parts of the mesh",

@@ -1,8 +1,8 @@
 //! The meshes of a 3D file as they stand there, for what judges them: nothing is mended.
 //!
-//! Of a file of this program the body is told by its name; strips along edges and turned copies of
-//! the cloth are left out. Of other files what is closed all around beside open cloth is no cloth:
-//! the largest such part is the body where it is as large as one.
+//! Of a file of this program the body is recognised by its name; strips along edges and turned
+//! copies of the cloth are left out. Of other files what is closed all around beside open cloth is
+//! no cloth: the largest such part is the body where it is as large as one.
 
 use super::chosen::cloth_of_ours;
 use super::closed::{Whole, wholes};

@@ -65,7 +65,7 @@ struct EarlyEnd {
     message: String,
     /// Empty where nobody knows what may help.
     hint: String,
-    /// What lies behind it, for who asks; empty where there is no more to tell.
+    /// Details behind the message; empty where there are none.
     detail: String,
 }
 

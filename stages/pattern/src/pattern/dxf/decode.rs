@@ -3,7 +3,7 @@
 //! From release 2007 on (`$ACADVER` AC1021) a file is UTF-8, before that in the code page that
 //! `$DWGCODEPAGE` names. Files say what is not so: text that is UTF-8 is read as that where the
 //! code page has one byte a letter, and where none is named. What is neither is read as
-//! Windows-1252, which is told.
+//! Windows-1252, with a warning.
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 use toile_core::Remarks;
@@ -13,7 +13,7 @@ const UNICODE: &str = "AC1021";
 /// The header stands within the first lines.
 const HEADER_LINES: usize = 4_000;
 
-/// The text of a file; how it was read is told where that is not plain.
+/// The text of a file, and a remark on how it was read where that is not certain.
 pub(super) fn text(bytes: &[u8], told: &mut Remarks) -> String {
     if bytes.is_ascii() {
         return String::from_utf8_lossy(bytes).into_owned();

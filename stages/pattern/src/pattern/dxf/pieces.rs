@@ -204,7 +204,7 @@ impl Place<'_> {
         }
     }
 
-    /// Tells lines of the boundary's layer that are no part of it.
+    /// Reports lines on the boundary's layer that are no part of the boundary.
     fn left_out(&self, layer: i32, lines: impl Iterator<Item = usize>, told: &mut Remarks) {
         let lines: Vec<String> = lines.map(|line| line.to_string()).collect();
         if !lines.is_empty() {

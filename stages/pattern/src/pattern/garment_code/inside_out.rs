@@ -14,9 +14,9 @@ use toile_core::prelude::*;
 
 /// Edges whose directions in space agree by more than this cosine run clearly the same way.
 const CLEAR: f64 = 0.5;
-/// Shorter edges lie too freely to tell, metres.
+/// Shorter edges are placed too loosely to decide, metres.
 const SHORTEST: f64 = 0.05;
-/// Fewer stitches do not tell.
+/// Fewer stitches do not decide.
 const LEAST: usize = 2;
 /// A panel looks clearly at the wearer where the cosine to the way there is more.
 const INWARDS: f64 = 0.5;

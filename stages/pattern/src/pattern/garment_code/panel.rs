@@ -55,7 +55,7 @@ struct Link {
     end: Point2,
 }
 
-/// Makes the piece; `stitched` are the edges that stitches name. Repairs are told.
+/// Makes the piece; `stitched` are the edges that stitches name. Repairs are reported.
 ///
 /// Errors: all that is wrong with its edges; else that it crosses itself.
 pub(super) fn made(
