@@ -86,7 +86,7 @@ pub(crate) fn once(
     }
 }
 
-/// Writes what a run that failed has made until then below its own folder, where nobody takes it
+/// Writes what a failed run has made until then into a folder of its own, so that it is not taken
 /// for a result.
 fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
     let files = std::mem::take(&mut *so_far.lock().unwrap_or_else(PoisonError::into_inner));
@@ -109,11 +109,10 @@ fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
 /// The folder of a run that failed, within its output folder.
 const FAILED: &str = "failed";
 
-/// Takes away what an earlier run that failed has left in its folder; a folder that is not such a
-/// run's stays.
+/// Removes what an earlier failed run has left in its folder; any other folder stays.
 fn clear(dir: &Path) {
     if dir.join("reason.txt").is_file() {
-        // What cannot be taken away lies beside the new files.
+        // What cannot be removed stays beside the new files.
         let _ = std::fs::remove_dir_all(dir);
     }
 }

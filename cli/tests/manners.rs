@@ -238,7 +238,7 @@ fn a_pipeline_comes_from_standard_input() {
     }
 }
 
-/// A pipe that nobody writes to, and a link to a device that never ends.
+/// A pipe without a writer, and a link to a device without an end.
 fn traps(dir: &Path) -> [PathBuf; 2] {
     let [pipe, device] = ["pipe", "device"].map(|name| dir.join(name));
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());

@@ -310,8 +310,7 @@ impl Context {
         there
     }
 
-    /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else
-    /// did.
+    /// Records a file that was read elsewhere; its content is hashed here if no digest is given.
     pub fn note_read(&self, path: &str, digest: Option<Digest>) {
         let digest = digest.or_else(|| digest_of(&crate::read_file(&self.resolve(path)).ok()?));
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), digest));

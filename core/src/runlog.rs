@@ -36,7 +36,7 @@ pub struct StageRecord {
 pub struct RunLog {
     /// The pipeline's name.
     pub pipeline: String,
-    /// The named quality that it was run at, for people; none where nobody asked for one.
+    /// The named quality that it was run at, for people; none where none was requested.
     pub quality: Option<String>,
     /// Stages in the order in which they ran.
     pub stages: Vec<StageRecord>,

@@ -110,7 +110,7 @@ pub const ARITY_EACH: u32 = 1;
 pub const ARITY_ALL: u32 = 2;
 /// The stage can do without.
 pub const PORT_OPTIONAL: u32 = 1;
-/// It wants the first made of its kind.
+/// It takes the first made of its kind.
 pub const PORT_ORIGINAL: u32 = 2;
 
 /// A parameter.
@@ -347,7 +347,7 @@ pub struct Sink {
     pub grow: Option<unsafe extern "C" fn(ctx: *mut c_void, count: usize) -> *mut c_void>,
 }
 
-/// A list of points and triangles: three coordinates a point, metres; three indices a triangle.
+/// A list of points and triangles: three coordinates per point, metres; three indices per triangle.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Cloth {

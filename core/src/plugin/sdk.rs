@@ -133,7 +133,7 @@ unsafe extern "C" fn run<S: StageType>(
         let (stage, host, call) = unsafe { (&*stage.cast::<S>(), *host, &*call) };
         let remote = Arc::new(Remote(RwLock::new(Some(host))));
         let outcome = run_stage(stage, call, &remote);
-        // What the stage may have kept of its context asks nobody any more.
+        // The stage may have kept its context: it must not call the host any more.
         *remote.0.write().unwrap_or_else(PoisonError::into_inner) = None;
         give_all(&host, outcome?)
     })

@@ -1,7 +1,7 @@
 //! The bilateral filter that makes the guide.
 //!
 //! Each pixel is the mean of those within [`RADIUS`], weighted by how near they are in place and in
-//! colour (Tomasi & Manduchi 1998); the colour's fall-off is three times the grain. 25 weights a
+//! colour (Tomasi & Manduchi 1998); the colour's fall-off is three times the grain. 25 weights per
 //! pixel, from a table.
 
 use image::RgbImage;

@@ -5,9 +5,9 @@
 //! Cloth of one colour has the same far mean everywhere, once it is asked at its own answer a few
 //! times (mean shift, Comaniciu & Meer 2002), so near minus far is the shading, and is divided out
 //! of the linear colours. Both means are bilateral filters (Tomasi & Manduchi 1998), made on a
-//! coarse grid of place and level (Chen, Paris & Durand 2007). Cost: a few operations a pixel, and
-//! the grid, some hundred thousand cells. Limits: one level is one colour: a soft gradient of the
-//! dye is taken for shading.
+//! coarse grid of place and level (Chen, Paris & Durand 2007). Cost: a few operations per pixel,
+//! and the grid, some hundred thousand cells. Limits: one level is one colour: a soft gradient of
+//! the dye is taken for shading.
 
 use image::RgbImage;
 use rayon::prelude::*;

@@ -29,7 +29,7 @@ use toile_core::prelude::*;
 /// they mislead methods of colour, but it may leave out a sleeve, and takes a hanger in. Its
 /// weights are a file of 4.6 MB that is not part of the program; plugins/saliency/README.md says
 /// where it comes from. Holes are filled; transparent pixels are ground. A photo in which it sees
-/// nothing gives an empty mask and a warning. Takes about 0.7 s a photo.
+/// nothing gives an empty mask and a warning. Takes about 0.7 s per photo.
 #[stage(
     role = Binariser,
     source = "Qin, Zhang, Huang, Dehghan, Zaiane, Jagersand 2020; He, Sun 2015",

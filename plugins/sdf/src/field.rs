@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use toile_core::artifact::{Body, Point3, Vector3};
 use toile_core::{Context, Length, StageError};
 
-/// The largest grid: 17 bytes a node while it is made, 8 afterwards.
+/// The largest grid: 17 bytes per node while it is made, 8 afterwards.
 const MAX_NODES: f64 = 4e7;
 /// Cells around the skin with exact distances.
 const BAND: f64 = 2.0;

@@ -5,7 +5,7 @@
 //! lie on is found by votes over its two end offsets (Hough, 1962), then fitted by least squares
 //! with Tukey's weights (1974).
 //!
-//! Cost: about 0.1 ms a side of 100 profiles.
+//! Cost: about 0.1 ms per side of 100 profiles.
 
 use crate::pixels::{Rgb, colour};
 use image::RgbImage;

@@ -1,5 +1,5 @@
-//! Every built-in stage, given what no one would give it on purpose: it answers or refuses, and
-//! never panics, and what it gives is sound.
+//! Every built-in stage, given inputs that no one would give it on purpose: it answers or refuses,
+//! and never panics, and what it gives is sound.
 //!
 //! Artifacts of a small, real run of the vest are edited at random. What fails the artifact's own
 //! check never reaches a stage in a real run, because the runner names it where it was made; so it

@@ -139,7 +139,7 @@ pub struct GarmentChange {
     pub outline_mm: Millimetres,
     /// Root mean square difference of the textures, grey levels; none without textures.
     pub texture_levels: Option<f64>,
-    /// Pairs of triangles that cross, as decided and turned round; none where nobody counts.
+    /// Pairs of triangles that cross, as decided and turned round; none where they are not counted.
     pub crossings: [Option<usize>; 2],
 }
 
@@ -164,7 +164,7 @@ pub enum RuleVerdict {
     Holds,
     /// Turning it round changes more than its tolerance.
     ChangesMore,
-    /// What it saved in the mean is no more than chance may make.
+    /// Its mean saving is within what chance may give.
     SavesNothing,
     /// Turned round, the pipeline fails.
     Needed,

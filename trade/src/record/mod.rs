@@ -64,7 +64,7 @@ pub struct Trade {
     pub front: Vec<usize>,
 }
 
-/// The points that keep the pipeline's limits and that none of those beats.
+/// The points within the pipeline's limits that no other such point beats.
 pub fn front_of(points: &[Point], clock: Clock) -> Vec<usize> {
     let nothing = Cost { time: f64::NAN, error: f64::NAN };
     let cost = |p: &Point| p.measured().filter(|m| m.sound).map_or(nothing, |m| m.cost(clock));

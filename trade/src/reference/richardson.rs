@@ -17,10 +17,11 @@
 /// step.
 pub const LEAST_ORDER: f64 = 0.2;
 
-/// Order of linear finite elements in the places of their vertices: the estimate counts on no more.
+/// Order of linear finite elements in the positions of their vertices: the estimate assumes no
+/// higher order.
 pub const FORMAL_ORDER: f64 = 2.0;
 
-/// Beyond it nobody asks for an order.
+/// Upper end of the range in which the order is searched.
 const MOST_ORDER: f64 = 64.0;
 
 /// Halvings in which it is found to rounding.

@@ -49,7 +49,8 @@ impl Study<'_> {
         self.board.knobs.iter().map(|k| k.dial.is_discrete()).collect()
     }
 
-    /// New, coarser than the reference, not of a hopeless choice, and likely to be done in time.
+    /// Whether a setting is new, coarser than the reference, without a hopeless choice, and likely
+    /// to end in time.
     fn is_worth(&self, setting: &Setting) -> bool {
         let is_known =
             self.store.lines.iter().any(|p| p.setting == *setting || self.is_beside(setting, &p.setting));

@@ -51,7 +51,7 @@ pub enum Cause {
         name: String,
         /// Its value before, as RON; none where it is new.
         from: Option<String>,
-        /// Its value now; none where it is no more.
+        /// Its value now; none where the stage no longer has it.
         to: Option<String>,
     },
     /// An input.

@@ -2,7 +2,7 @@
 //!
 //! A stage that promises to be deterministic is run once for the same parameters, inputs, version
 //! and files; after that its result comes from a folder. The unit is one run: a stage that is
-//! mapped over a named set has one entry a panel, so that a changed front leaves the back alone.
+//! mapped over a named set has one entry per panel, so that a changed front leaves the back alone.
 //! Nothing is decoded before something needs it: the digests that keys are made of stand in small
 //! manifests.
 //!
@@ -61,7 +61,7 @@ pub struct Cache {
 pub(crate) enum CacheAnswer {
     /// It is there, whole as far as can be seen without reading it.
     Hit(Manifest),
-    /// It is not, or no more.
+    /// It is not there, or no longer.
     Miss(Miss),
 }
 

@@ -195,8 +195,8 @@ impl CallState {
         self.keep(port, name, artifact)
     }
 
-    /// Lists that lie in memory of `alloc` are taken as they are: by the rules of the border nobody
-    /// writes to what was given.
+    /// Lists that lie in memory of `alloc` are taken as they are: by the rules of the plugin ABI
+    /// nothing writes to what was given.
     fn own_blocks(&self, record: &mut Record<'_>) {
         let blocks = locked(&self.blocks);
         for field in &mut record.fields {

@@ -74,7 +74,7 @@ impl PipelineRun<'_> {
         Ok(self.base(last)?.map(|base| (base, last)))
     }
 
-    /// Has the improving stages between `base` and `last` pass on what they are given, and forgets
+    /// Has the improving stages between `base` and `last` pass on what they are given, and drops
     /// all steps from the first of them.
     pub(super) fn turn_back(&mut self, base: usize, last: usize, why: String) {
         let between: Range<usize> = base + 1..last + 1;
@@ -161,7 +161,8 @@ fn gives_garment(node: &Node) -> bool {
     node.card.outputs.iter().any(|o| o.kind == Garment::KIND)
 }
 
-/// What feeds a stage's last port of that kind: the latest made, where another one wants the first.
+/// What feeds a stage's last port of that kind: the latest made, even where another port takes the
+/// first.
 fn feed_of(node: &Node, kind: Kind) -> Option<&Feed> {
     let ports = node.card.inputs.iter().zip(&node.inputs).rev();
     let mut feeds = ports.filter(|(port, _)| port.kind == kind && !port.original).map(|(_, feed)| feed);

@@ -76,7 +76,7 @@ pub struct RunResult {
 /// A stage's failure with its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunError {
-    /// The stage's id; empty where it is of none of the pipeline's.
+    /// The stage's id; empty where the error is not a stage's.
     pub stage: String,
     /// The panel at work, empty for a stage that is not mapped.
     pub entry: String,
@@ -270,8 +270,8 @@ fn sound(pipeline: &Pipeline) -> Result<(), RunError> {
     Ok(())
 }
 
-/// The stages that something asks for: `until`, or all that give files (with the judgement), or,
-/// in a pipeline without writers, all that nobody consumes.
+/// The stages whose results are requested: `until`, or all that give files (with the judgement),
+/// or, in a pipeline without writers, all whose results no stage takes.
 fn sinks(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<usize>, RunError> {
     if let Some(until) = &options.until {
         return match pipeline.nodes.iter().position(|n| n.id == *until) {

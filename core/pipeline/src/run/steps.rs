@@ -113,8 +113,8 @@ impl PipelineRun<'_> {
         self.pipeline.nodes.iter().zip(&self.steps).filter_map(cost).collect()
     }
 
-    /// What a stage was expected to take, where it ran whole. A run that found in the cache all
-    /// that a cache can hold is no news, and asks nobody.
+    /// What a stage was expected to take, if it ran whole. Nothing is predicted for a run that
+    /// found in the cache all that a cache can hold, because it measures nothing new.
     pub(super) fn expected(&self, index: usize) -> Option<Predicted> {
         let ran_whole =
             |step: &StageOutcome| matches!(step, StageOutcome::Ran(RanStage { cost: Some(_), .. }));

@@ -4,8 +4,8 @@
 //! becomes a named edge of its piece's outline, and each pair of parts a seam. Parts that are sewn
 //! to each other, directly or through others, share one [`Gauge`], so that meshers divide all of
 //! them alike. Layers of pleats are sewn first ([`super::pleats`]). Cost: linear in the length of
-//! the edges, a few milliseconds a piece. Limits: holes keep their edges unsewn; a slit is not cut,
-//! with a warning.
+//! the edges, a few milliseconds per piece. Limits: holes keep their edges unsewn; a slit is not
+//! cut, with a warning.
 
 use super::super::{
     Edge, EdgeRef, Gauge, InnerKind, InnerLine, Loop, Outline, Point2, Seam, SeamKind, SewingPlan,

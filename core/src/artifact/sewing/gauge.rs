@@ -5,7 +5,7 @@
 //! sag its edge length allows. The sag of the shortest chord is the noise of the outline, and is
 //! never a reason to divide. Two edges that are sewn together take the longer length and the
 //! greater sag of both, so that both get the same count although each is divided alone. Cost:
-//! linear in the points of the edge times the points under the longest chord, once an edge.
+//! linear in the points of the edge times the points under the longest chord, once per edge.
 
 use crate::artifact::{Point2, Vector2};
 

@@ -87,12 +87,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A colour picture: `size` (width, height) and three bytes a pixel.
+    /// A colour picture: `size` (width, height) and three bytes per pixel.
     pub fn rgb(&self, name: &str) -> Result<Shared<RgbImage>, String> {
         self.picture(name)
     }
 
-    /// A grey picture: `size` and one byte a pixel.
+    /// A grey picture: `size` and one byte per pixel.
     pub fn grey(&self, name: &str) -> Result<Shared<GrayImage>, String> {
         self.picture(name)
     }

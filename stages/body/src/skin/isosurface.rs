@@ -6,7 +6,7 @@
 //! The field is symmetric about x = 0: one half is meshed, with a column of cells astride the
 //! plane, and mirrored, so that the mesh is symmetric to the last bit and costs half.
 //!
-//! Cost: one look-up a grid point near the skin and about four a vertex and round; slabs and
+//! Cost: one look-up per grid point near the skin and about four per vertex and round; slabs and
 //! vertices in parallel. Limit: parts thinner than two cells are lost, and parts closer than two
 //! cells may share edges of four triangles, which the caller must refuse.
 

@@ -4,8 +4,8 @@
 //! Method: the engine's `StaticEquilibrium` (coarse to fine, Newton's method on the potential of
 //! sheet, seams, weight, contacts and friction). Cost: some 35 to 150 factorizations of the finest
 //! mesh, O(triangles^1.5) each with a small factor. Limits: intermediate states are no physical
-//! motion, so they must not be shown as an animation; folds and friction have many states of rest,
-//! of which one is found.
+//! motion and make no animation; folds and friction have many states of rest, of which one is
+//! found.
 
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
@@ -40,12 +40,12 @@ pub enum ProofSteps {
     /// A sixtieth of a second: the least force left over shows.
     Short,
     /// A tenth of a second and more, too: what slides or falls shows. Folds may still creep, in
-    /// garments of many gathers by some centimetres in the end; the way there is what takes
-    /// longest.
+    /// garments of many gathers by some centimetres in the end; following that creep takes most of
+    /// the time.
     Long,
 }
 
-/// Sews the garment and brings it to rest, without the way there.
+/// Sews the garment and finds its state of rest, without simulating how it gets there.
 ///
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
 /// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static`
@@ -132,8 +132,8 @@ pub struct StaticEquilibrium {
     /// which is checked, or always double. The state that is found keeps `speed` either way.
     #[param(default = FactorPrecision::Mixed)]
     pub precision: FactorPrecision,
-    /// Whether what has come to rest sleeps while few vertices still move: these settle by
-    /// themselves before the whole takes its next step. Rest is proved with all either way.
+    /// Whether vertices at rest are held while few others still move: these are solved alone before
+    /// the next step of all vertices. Rest is proved with all vertices either way.
     #[param(default = true)]
     pub asleep: bool,
     /// Distance at which cloth is held off itself where the pipeline names no collider.

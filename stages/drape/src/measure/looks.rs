@@ -16,7 +16,7 @@ const FIN: f64 = 0.08;
 /// A shoulder seam stands off where its cloth is farther from the body than this at one place in
 /// twenty, metres.
 const OFF: f64 = 0.035;
-/// And is not looked for farther away, metres.
+/// Cloth farther from the body than this is not looked at, metres.
 const REACH: f64 = 0.2;
 /// A hem hangs unevenly from this difference on, metres.
 const UNEVEN: f64 = 0.03;

@@ -59,7 +59,7 @@ pub fn springs(
 }
 
 /// Flattens for woven cloth: the warp (along the grain, pattern y) and the weft keep their lengths,
-/// shear gives way.
+/// shear is soft.
 ///
 /// The mean grain is held upright while the threads settle.
 ///

@@ -1,10 +1,10 @@
 //! Canny's edge detector.
 //!
-//! Method (J. Canny, *A computational approach to edge detection*, 1986): Gaussian smoothing,
-//! Sobel gradient, non-maximum suppression across the gradient, hysteresis between two thresholds.
-//! Its edge pixels say where the garment ends; the place is then taken from the gradient's ridge
-//! to a fraction of a pixel. Cost: about 60 ns a pixel of the band. Limits: corners are rounded by
-//! the smoothing, and are put back as the intersection of their sides ([`super::corners`]).
+//! Method (J. Canny, *A computational approach to edge detection*, 1986): Gaussian smoothing, Sobel
+//! gradient, non-maximum suppression across the gradient, hysteresis between two thresholds. Its
+//! edge pixels say where the garment ends; the place is then taken from the gradient's ridge to a
+//! fraction of a pixel. Cost: about 60 ns per pixel of the band. Limits: corners are rounded by the
+//! smoothing, and are put back as the intersection of their sides ([`super::corners`]).
 
 use super::band::{BandPicture, PicturePatch, TileBand};
 use super::operator::{Accept, Operator, OperatorResponse, gaussian, gradient};

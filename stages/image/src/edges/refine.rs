@@ -4,7 +4,7 @@
 //! response is sampled along the normal, the best edge within reach is taken, and its place is
 //! found by a parabola (ridges) or a straight line (zero crossings) through the samples around it.
 //! Offsets that leave the median of their neighbours are dropped. Where no edge is found, the point
-//! where the mask crosses one half stays. Cost: about 1 us a boundary point.
+//! where the mask crosses one half stays. Cost: about 1 us per boundary point.
 
 use super::operator::{Accept, OperatorResponse};
 use rayon::prelude::*;

@@ -18,7 +18,7 @@ pub enum Needs {
     Both,
 }
 
-/// What a style of that name needs; none of a stage that is no built-in style of photos.
+/// What a style of that name needs; none for a stage that is no built-in style of photos.
 pub fn needs(stage: &str) -> Option<Needs> {
     match stage {
         "Block" | "Fitting" => Some(Needs::Front),

@@ -388,7 +388,7 @@ proptest! {
     }
 }
 
-/// White paper of A4 on a dark floor, 1,000 pixels a metre, photographed from straight above.
+/// White paper of A4 on a dark floor, 1,000 pixels per metre, photographed from straight above.
 fn sheet() -> RgbImage {
     RgbImage::from_fn(900, 700, |x, y| {
         Rgb(if (500..797).contains(&x) && (150..360).contains(&y) { [235, 235, 230] } else { [70, 60, 50] })

@@ -28,11 +28,11 @@ pub(super) type Yarns = [f64; 2];
 /// What the cloth carries.
 #[derive(Debug, Clone)]
 pub(super) struct ClothLoad {
-    /// Strain, one a triangle.
+    /// Strain, one per triangle.
     pub strain: Vec<Yarns>,
-    /// Tension, N per metre of cut width, one a triangle.
+    /// Tension, N per metre of cut width, one per triangle.
     pub tension: Vec<Yarns>,
-    /// Pressure on the body, Pa, one a vertex; none where the cloth is not on it.
+    /// Pressure on the body, Pa, one per vertex; none where the cloth is not on it.
     pub pressure: Vec<Option<f64>>,
     /// Present area around each vertex, square metres; joined vertices have theirs together.
     pub area: Vec<f64>,

@@ -11,7 +11,7 @@ const BESIDE: f64 = 0.05;
 /// A closed line of edges that nothing is sewn to.
 #[derive(Debug, Clone)]
 pub(super) struct Opening {
-    /// Its vertices in order, one a panel that has part in it.
+    /// Its vertices in order, one per panel that has part in it.
     pub vertices: Vec<u32>,
     /// Where they are.
     pub points: Vec<Point3>,

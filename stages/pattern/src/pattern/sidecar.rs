@@ -78,8 +78,8 @@ impl Kind {
 
 /// The seams of a file's bytes, along edges that the pieces have.
 ///
-/// Errors: text that is no such RON, with line and column; every edge that there is none of, with
-/// the number of its seam.
+/// Errors: text that is no such RON, with line and column; every edge that does not exist, with the
+/// number of its seam.
 pub(super) fn read(bytes: &[u8], pieces: &[Piece]) -> Result<Vec<PatternSeam>, Vec<Fault>> {
     let fault = |what: String, remedy: Option<String>| Fault {
         code: ErrorCode::PatternLoading,

@@ -3,8 +3,8 @@
 //! Straight segments of the reduced photo are taken for edges. Grey levels along lines beside an
 //! edge are tested for a period by autocorrelation (`period`). Marks are told from weaves and
 //! stripes by their shape: the period is there beside the edge, not beyond it, and deeper inside it
-//! gives way to five or ten times as much (millimetres) or to nothing (centimetres). The spacing is
-//! then followed along the edge by its phase, and a parabola through the phases gives it and its
+//! is replaced by one five or ten times as long (millimetres) or by none (centimetres). The spacing
+//! is then followed along the edge by its phase, and a parabola through the phases gives it and its
 //! change.
 //!
 //! Limits: the scale holds along the ruler; a tilt across it is not seen. Marks need 4 pixels each.

@@ -23,7 +23,7 @@ pub enum Scheme {
     Implicit,
     /// Implicit Euler with conjugate gradients.
     Gradients,
-    /// XPBD, one small step a time step.
+    /// XPBD, one substep per time step.
     Xpbd,
     /// Projective dynamics, 10 iterations per time step.
     Projective,

@@ -17,7 +17,7 @@ pub(super) struct TextEdit {
 pub(super) enum Followed {
     /// It is as it was, or its value cannot be converted.
     Same,
-    /// It is no more, with what does its work now.
+    /// It was removed; the text says what does its work now.
     Removed(&'static str),
     /// Its new name and value.
     Renamed(String, String),

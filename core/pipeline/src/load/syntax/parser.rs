@@ -1,7 +1,7 @@
 //! From RON text to its syntax tree.
 //!
 //! The parser knows brackets, names, literals and comments, and leaves the meaning of literals to
-//! `ron`. It exists because `ron` forgets places once a value is read, and because its own
+//! `ron`. It exists because `ron` keeps no places once a value is read, and because its own
 //! messages cannot name the bracket that was never closed. Cost: one pass over the text. Limits:
 //! nesting up to [`MAX_DEPTH`].
 

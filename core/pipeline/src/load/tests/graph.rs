@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A file of these stages, one a line from line 3 on, with photos in front.
+/// A file of these stages, one per line from line 3 on, with photos in front.
 fn with(stages: &[&str]) -> String {
     let photos = "\"front\": (file: \"f.jpg\", width: \"5 cm\")";
     format!("(photos: {{{photos}}},\nstages: [\n{}\n])", stages.join(",\n"))

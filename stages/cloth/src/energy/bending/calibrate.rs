@@ -1,13 +1,13 @@
-//! What a bending mesh really is, against the sheet it stands for.
+//! The bending stiffness that a mesh has, against that of the sheet that it represents.
 //!
-//! Load the free rest mesh of each panel with constant moments along its border (along x, along y,
-//! twist): the exact sheet answers with constant curvature. The quadratic that fits the mesh's
-//! answer best has a curvature as well, and so gives a compliance tensor C. Coupled hinges asked
-//! for rigidity D are built with `D C D` in place of it: right to second order in what is wrong.
-//! Lone hinges are multiplied by one factor, that of the mean over all directions of a cylinder.
-//! Letting the vertices give way matters: held on a quadratic surface an irregular mesh of coupled
-//! hinges has exactly the right energy, and 3 % of it is gone in equilibrium. Cost: one sparse
-//! factor of a number a vertex pair, some 3 % of a Newton step, once a mesh.
+//! The free rest mesh of each panel is loaded with constant moments along its border (along x,
+//! along y, twist): the exact sheet takes a constant curvature. The curvature of the quadratic that
+//! fits the mesh's displacement best gives a compliance tensor C. Coupled hinges of rigidity D are
+//! built with `D C D` in place of D: right to second order in the error. Lone hinges are multiplied
+//! by one factor, the mean over all directions of a cylinder. The vertices must be free to move:
+//! held on a quadratic surface, an irregular mesh of coupled hinges has exactly the right energy,
+//! but in equilibrium 3 % less. Cost: one sparse factor with one number per vertex pair, some 3 %
+//! of a Newton step, once per mesh.
 
 use nalgebra::{Matrix3, Vector2};
 
@@ -20,7 +20,7 @@ use crate::mesh::Sheet;
 
 /// Triangles of different panels meet with different rest frames, m.
 const SAME_FRAME: f64 = 1e-9;
-/// A mesh that asks for more correction than this (either way) is too small to judge.
+/// A mesh that needs more correction than this (either way) is too small to judge.
 const LARGEST_FACTOR: f64 = 2.0;
 
 /// Hinges that lean with the square of their direction's cosine change the two stiffnesses by two
@@ -41,7 +41,7 @@ pub(crate) struct Calibration {
     pub lean: f64,
 }
 
-/// The rest mesh cut apart into panels: seam vertices count once a panel.
+/// The rest mesh cut apart into panels: seam vertices count once per panel.
 struct Panels {
     corners: Vec<[u32; 3]>,
     /// Rest place of each vertex.
@@ -184,7 +184,7 @@ fn correct(d: &Matrix3<f64>, compliance: &Matrix3<f64>) -> Option<Matrix3<f64>> 
     fair.then(|| d * compliance * d)
 }
 
-/// Stiffness against lifts of lone hinges of rigidity 1, one number a vertex pair.
+/// Stiffness against lifts of lone hinges of rigidity 1, one number per vertex pair.
 fn lone_matrix(sheet: &Sheet, flaps: &[Flap], panels: &Panels) -> BlockMatrix {
     let vertices: Vec<[u32; 4]> = flaps.iter().map(|f| panels.vertices(sheet, f)).collect();
     let mut a =

@@ -7,7 +7,7 @@
 //! friction on the body: a spring at small turns, whose moment approaches the couple at large ones.
 //! The angle moves along while the cloth moves fast. The angle is the component of the fold along
 //! the normal of the hinge. The rotation of the normal is left out of the derivatives, for a sheet
-//! that hardly stretches curves only along its normal. Cost: a few operations a hinge.
+//! that hardly stretches curves only along its normal. Cost: a few operations per hinge.
 
 use super::quadratic::{Fold, folds};
 use crate::contact::coulomb::SLIP_RETURN;

@@ -4,7 +4,7 @@
 //! Cloth has many equilibria, and a solver that goes straight to one of them chooses it by chance:
 //! by rounding in the initial positions. A stiff sheet has few equilibria, mostly one. So the
 //! garment is sewn and first brought to equilibrium as if its bending length were half of its size,
-//! so near to rest that the state depends no more on where it began. Stiffness is then lowered by
+//! so near to rest that the state no longer depends on the start. Stiffness is then lowered by
 //! factors (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending
 //! length of [`EDGES`] edges. Finer folds, whose shape would depend on the mesh of the level, form
 //! on a finer level. The finest level ends with the bending of the fabric.

@@ -7,7 +7,7 @@
 //! is enough, and a print, which is as unlike its cloth as cloth and ground are, does not part
 //! them.
 //!
-//! Cost: some 100 rounds of ten operations a pixel; 20 ms at 200 pixels. Limits: on a patterned
+//! Cost: some 100 rounds of ten operations per pixel; 20 ms at 200 pixels. Limits: on a patterned
 //! ground the edges of the pattern hold the walker up, and the boundary lies at any of them.
 
 use super::super::background::rim_width;

@@ -12,7 +12,7 @@ use toile_geometry::components::{groups, links};
 
 /// Cloth is no thicker than this, metres.
 const THICKEST: f64 = 0.01;
-/// And so many times as large as it is thick.
+/// Cloth is at least so many times as large as it is thick.
 const SLENDER: f64 = 20.0;
 
 /// A connected component of a mesh.

@@ -126,8 +126,7 @@ fn key(t: &[u32; 3], k: usize) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Gives each side of these edges a label of its own; returns nothing for edges that there are none
-/// of.
+/// Gives each side of these edges a label of its own; returns none where the mesh has no such edge.
 pub(in crate::flat) fn cut_along(triangles: &[[u32; 3]], edges: &[[u32; 2]], labels: &mut [[u32; 2]]) {
     let mut marked: Vec<[u32; 2]> = edges.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
     marked.sort_unstable();

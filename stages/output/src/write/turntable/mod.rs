@@ -4,7 +4,7 @@
 //! pixel of the nearest views each place is (view interpolation: Chen, Williams 1993; with a mesh
 //! in between: Buehler and others 2001), or moves the pixels of the nearest views along the flow
 //! that block matching finds between them (`flow`). What the page holds is set down in
-//! `docs/reference/turntable.md`. Cost: one picture a view. Limits: 255 parts, 2040 px of width.
+//! `docs/reference/turntable.md`. Cost: one picture per view. Limits: 255 parts, 2040 px of width.
 
 mod flow;
 mod mesh;

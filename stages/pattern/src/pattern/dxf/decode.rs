@@ -2,7 +2,7 @@
 //!
 //! From release 2007 on (`$ACADVER` AC1021) a file is UTF-8, before that in the code page that
 //! `$DWGCODEPAGE` names. Files say what is not so: text that is UTF-8 is read as that where the
-//! code page has one byte a letter, and where none is named. What is neither is read as
+//! code page has one byte per letter, and where none is named. What is neither is read as
 //! Windows-1252, with a warning.
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};

@@ -3,7 +3,7 @@
 //!
 //! A block is a piece in one size. [`tags`] and [`entities`] read the file, [`pieces`] makes pieces
 //! of blocks. DXF knows no seams: they come from a file beside it, or are proposed. Cost: some
-//! milliseconds a piece.
+//! milliseconds per piece.
 
 mod damage;
 mod decode;

@@ -3,7 +3,7 @@
 //!
 //! The format has no schema; pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023) is its
 //! specification. [`read`] takes the fields, [`units`] finds the scale, [`panel`] makes pieces,
-//! [`stitches`] seams; what is beyond repair is a [`damage`]. Cost: some milliseconds a panel.
+//! [`stitches`] seams; what is beyond repair is a [`damage`]. Cost: some milliseconds per panel.
 
 mod damage;
 mod inside_out;

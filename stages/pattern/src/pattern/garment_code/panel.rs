@@ -15,7 +15,7 @@ use toile_core::prelude::*;
 
 /// A gap between edges of up to this is closed, metres.
 const HAIR: f64 = 5e-3;
-/// If it is also no more than this share of both edges.
+/// Such a gap is closed only if it is at most this share of both edges.
 const HAIR_SHARE: f64 = 0.25;
 /// A shorter edge has no length, metres.
 const SPECK: f64 = 1e-4;

@@ -12,7 +12,7 @@ use toile_core::artifact::Point2;
 
 /// The size of the largest panel, metres.
 const PLAUSIBLE: (f64, f64) = (0.15, 5.0);
-/// And where the unit is guessed.
+/// The size of the largest panel where the unit is guessed, metres.
 const LIKELY: (f64, f64) = (0.25, 2.5);
 /// Units in a metre: centimetres as GarmentCode writes, a third of that as some of its forerunner's
 /// templates, millimetres, inches, metres.

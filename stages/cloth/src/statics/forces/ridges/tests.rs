@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// A sheet of 1 m, three cells a side, none of its vertices over the blade of 2 mm that stands
+/// A sheet of 1 m, three cells per side, none of its vertices over the blade of 2 mm that stands
 /// below its middle; its height is a plane's.
 fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
     let mut scene = generate::drape(3);

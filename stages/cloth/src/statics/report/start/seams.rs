@@ -90,8 +90,9 @@ struct Threads {
 }
 
 impl Threads {
-    /// Of a seam of at least two pairs; `laid` with its sides moved onto each other. `None` where
-    /// the order does not decide, for closed sides may be shifted along each other instead.
+    /// The lengths for a seam of at least two pairs; with `laid` its sides are first moved onto
+    /// each other. `None` where the order does not decide, because closed sides may be shifted
+    /// along each other instead.
     fn of(outlines: &Outlines, seam: &Seam, x: &[Vec3], laid: bool) -> Option<Self> {
         let (pairs, is_round) = outlines.in_order(seam);
         let n = pairs.len();
