@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Clone, Default)]
 pub struct Cancel {
     flag: Arc<AtomicBool>,
-    /// Asked as well, where the flag lies on the other side of a plugin's border.
+    /// Asked as well, where the flag lies on the other side of the plugin ABI.
     also: Option<Arc<dyn Fn() -> bool + Send + Sync>>,
 }
 

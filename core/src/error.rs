@@ -145,7 +145,7 @@ impl StageError {
         self
     }
 
-    /// Adds what lies behind it, for who asks.
+    /// Adds what lies behind it, for those who need them.
     pub fn detail(mut self, detail: impl Into<String>) -> Self {
         self.detail = Some(detail.into());
         self

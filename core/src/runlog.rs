@@ -55,7 +55,7 @@ pub struct Failure {
     pub message: String,
     /// What the user may do about it.
     pub hint: Option<String>,
-    /// What lies behind it, for who asks.
+    /// What lies behind it, for those who need them.
     pub detail: Option<String>,
 }
 

@@ -11,11 +11,11 @@ pub struct Told {
     pub decided: StageDecision,
     /// What it saves.
     pub saving: Saving,
-    /// How it is turned round.
+    /// How it is reversed.
     pub turned: String,
 }
 
-/// Adds to decisions what they save and how they are turned round.
+/// Adds to decisions what they save and how they are reversed.
 pub fn told(evidence: &Evidence<'_>, decided: Vec<StageDecision>) -> Vec<Told> {
     let one = |decided: StageDecision| {
         let path = path_to(evidence.source, evidence.pipeline, &decided.stage);

@@ -1,5 +1,4 @@
-//! How far a garment is from the reference, in what its maker cares about. No two figures are
-//! blended.
+//! How far a garment is from the reference, in separate figures that are never combined into one.
 
 use crate::measure::Ran;
 use crate::silhouette::{ViewSide, agreement};

@@ -15,7 +15,7 @@ use toile_pipeline::{Override, Pipeline};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SavingBasis {
-    /// Runs of this very pipeline with the decision turned round (`toile trade --ablate`).
+    /// Runs of this very pipeline with the decision reversed (`toile trade --ablate`).
     Measured,
     /// The cost model, for the pipeline with the decision and without it.
     Modelled,

@@ -1,4 +1,4 @@
-//! What a garment is held against.
+//! What a garment is compared with.
 
 /// Limits of the checks; shares unless a unit is named.
 #[derive(Debug, Clone, Copy, PartialEq)]

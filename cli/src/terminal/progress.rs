@@ -121,8 +121,8 @@ fn measuring(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar 
     bar
 }
 
-/// A bar on standard error, of no colour; silent where that is no terminal, a dumb one, or nothing
-/// but errors is to be said.
+/// A bar on standard error, without colour. It is hidden where standard error is no terminal or a
+/// dumb one, or with `--quiet`.
 pub(crate) fn drawn(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar {
     let target = if streams.is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(length), target);

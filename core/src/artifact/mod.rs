@@ -90,8 +90,8 @@ pub trait Artifact: Any + Send + Sync + Debug {
     fn check(&self) -> Result<(), String>;
     /// The figures that goldens and the report keep of it.
     fn measures(&self) -> Measures;
-    /// The artifact as a record of plain fields, by which it is stored and crosses a plugin's
-    /// border; `None` for a service.
+    /// The artifact as a record of plain fields, by which it is stored and crosses the plugin ABI;
+    /// `None` for a service.
     fn record(&self) -> Option<store::Record<'_>> {
         None
     }

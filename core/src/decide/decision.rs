@@ -66,7 +66,7 @@ pub enum Saves {
     Share(f64),
 }
 
-/// How a decision is turned round.
+/// How a decision is reversed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Turn {
@@ -98,6 +98,6 @@ pub struct Decision {
     pub saves: Saves,
     /// Where the rule comes from: author and year, or a page of this product.
     pub source: String,
-    /// How it is turned round.
+    /// How it is reversed.
     pub turn: Turn,
 }

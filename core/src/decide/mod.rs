@@ -2,7 +2,7 @@
 //!
 //! A *rule* looks at a fact of the scene that is known before anything runs (parameters, wired
 //! ports, sizes) and, where the fact holds, gives a [`Decision`]: what is done, by which fact,
-//! within which tolerance, saving how much, and the switch that turns it round. The switch is a
+//! within which tolerance, saving how much, and the switch that reverses it. The switch is a
 //! parameter of a stage, or an option of the run: what a decision says is what the stage itself
 //! does. Rules live beside the stages that they speak of, one file a rule; a stage tells its
 //! decisions by `fn decisions(&self, known: &Known<'_>) -> Vec<Decision>` beside its `run`. Stages

@@ -1,4 +1,4 @@
-//! The types that cross the border of a plugin, as C has them (`core/include/toile_plugin.h`).
+//! The types that cross the plugin ABI, as C has them (`core/include/toile_plugin.h`).
 //!
 //! Rules, given in full in docs/reference/plugin-abi.md: nothing but these types and plain numbers
 //! crosses; fields are only ever added at the end of a structure, with a new minor version; whoever

@@ -46,7 +46,7 @@ enum ListKeeper {
     Block(Keeper),
 }
 
-// Its functions may be called from any thread, by the rules of the border.
+// Its functions may be called from any thread, by the rules of the plugin ABI.
 unsafe impl Send for Lending {}
 unsafe impl Sync for Lending {}
 

@@ -1,6 +1,6 @@
 //! The plugin's side: what the macro [`plugin!`](crate::plugin) puts behind a crate's stages.
 //!
-//! A stage written with `#[stage]` knows nothing of the border: its artifacts are made from the
+//! A stage written with `#[stage]` knows nothing of the plugin ABI: its artifacts are made from the
 //! records that it is given, its context asks the program, and what it returns is lent as records.
 
 use super::abi::{self, Text};
@@ -227,7 +227,7 @@ fn on_threads<T: Send>(_: u32, work: impl FnOnce() -> T + Send) -> T {
 fn on_threads<T: Send>(threads: u32, work: impl FnOnce() -> T + Send) -> T {
     static POOLS: Mutex<BTreeMap<u32, Arc<rayon::ThreadPool>>> = Mutex::new(BTreeMap::new());
     static COMMON: std::sync::Once = std::sync::Once::new();
-    // Colliders are asked outside of any run: their loops fall to the library's common pool.
+    // Colliders are called outside of any run: their loops run in the library's common pool.
     COMMON.call_once(|| {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();
     });
@@ -307,7 +307,7 @@ fn give(host: &abi::Host, port: u32, name: &str, artifact: &dyn Artifact) -> Res
     }
 }
 
-/// The program, asked over the border until the call is over.
+/// The program, asked through the plugin ABI until the call is over.
 struct Remote(RwLock<Option<abi::Host>>);
 
 // The program's functions may be called from any thread.

@@ -1,5 +1,5 @@
-//! Records across the border: lent as they lie in memory, and read with every pointer checked as
-//! far as a pointer can be.
+//! Records across the plugin ABI: lent as they lie in memory, and read with every pointer checked
+//! as far as a pointer can be.
 
 use super::abi;
 use super::lending::{Lending, ListOwners};

@@ -2,7 +2,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `weights` | the file of the network: named, read, and held against its digest |
+//! | `weights` | the file of the network: named, read, and compared with its digest |
 //! | `network` | the network, from the file's bytes to a map of the photo |
 //! | `border` | the map at the photo's size, its border drawn to the photo's edges |
 //! | `holes` | holes of the mask, filled |

@@ -18,7 +18,7 @@ const LEAF: usize = 2;
 /// An end nearer than this to a triangle's plane lies in it for [`pierces_clearly`], m.
 const FLAT: f64 = 1e-9;
 
-/// Triangles that one parallel task of [`between_meshes`] looks after.
+/// Triangles that one parallel task of [`between_meshes`] handles.
 const CHUNK: usize = 256;
 
 /// A mesh: vertices and triangles.

@@ -21,7 +21,7 @@ const PIPELINE: &str = r#"(
 )
 "#;
 
-/// Runs in two rounds: as decided and with each decision turned round.
+/// Runs in two rounds: as decided and with each decision reversed.
 const RUNS: usize = 6;
 
 fn folder() -> tempfile::TempDir {

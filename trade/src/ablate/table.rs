@@ -4,7 +4,7 @@ use super::record::{Ablation, DecisionRow, EndedBudget, GarmentChange};
 use crate::record::median;
 use std::fmt::Write;
 
-/// The table: a line a decision, and below it how it is turned round and what the rule comes to.
+/// The table: one line per decision, and below it how it is reversed and the verdict on its rule.
 pub fn lines(ablation: &Ablation) -> Vec<String> {
     let mut lines = vec![as_decided(ablation), head()];
     for row in &ablation.rows {

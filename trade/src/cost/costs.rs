@@ -109,7 +109,7 @@ impl Costs {
         Some(law.estimate(size, at.style, self.met.contains(at.pipeline), more))
     }
 
-    /// How far this machine may lie from what the laws rest on, as a logarithm.
+    /// How far this machine may differ from those that the laws were measured on, as a logarithm.
     fn elsewhere(&self, figure: CostFigure) -> f64 {
         let is_told = self.shipped.is_empty() || !figure.is_time() || self.speed(figure).is_some();
         if is_told { 0.0 } else { OTHER_MACHINE }

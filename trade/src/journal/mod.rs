@@ -129,7 +129,7 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
         Ok(Some(found))
     }
 
-    /// Puts a file aside that is not gone on from.
+    /// Renames the file of a record that is not continued.
     pub(crate) fn put_aside(folder: &Path, kind: JournalKind) {
         let _ = std::fs::rename(folder.join(kind.file()), folder.join(format!("{}.old.jsonl", kind.name)));
     }

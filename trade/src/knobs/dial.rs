@@ -7,7 +7,7 @@ use toile_core::{Finer, Length, ParamDoc, StageError};
 /// What a knob may be.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Dial {
-    /// One of several stages, by name; the slot's own is among them or not.
+    /// One of several stages, by name, with or without the slot's own.
     Stage(Vec<String>),
     /// One of several texts.
     List(Vec<String>),

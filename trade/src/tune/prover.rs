@@ -1,4 +1,4 @@
-//! Runs the picks of a wish afresh, the best first, until one keeps it.
+//! Runs the settings that were picked for a wish again, the best first, until one meets it.
 
 use super::{SettingProof, Wish, overrides, picks, refusal};
 use crate::errors::compare;

@@ -105,7 +105,7 @@ impl GoldenSheet {
         Self::made(log, arithmetic, &|_, garment| GoldenSurface::of(garment))
     }
 
-    /// The sheet of a run with the places of the golden that it is held against.
+    /// The sheet of a run with the places of the golden that it is compared with.
     pub fn against(golden: &GoldenSheet, log: &RunLog, arithmetic: &str) -> Self {
         Self::made(log, arithmetic, &|title, garment| {
             let known = golden.sections.iter().find(|s| s.title() == title).and_then(|s| s.surface.as_ref());

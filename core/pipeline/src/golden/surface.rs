@@ -3,7 +3,7 @@
 //! A drape may change by centimetres while its area, its box and its strains stay what they were,
 //! so a sheet keeps some hundreds of points of the surface as well. A point is named by its place
 //! in the flat pattern, which no mesh changes, and the sheet's own places are looked up in the
-//! garment that is held against it.
+//! garment that is compared with it.
 //!
 //! Method: the places of a panel are the first of the golden-ratio sequence of the plane (Roberts
 //! 2018), laid over the panel's box, that lie on it; each panel has a share of [`PLACES`] by its

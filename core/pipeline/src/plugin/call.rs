@@ -38,7 +38,7 @@ pub(super) struct PluginLoop {
     pub(super) done: Sender<()>,
 }
 
-// Its body may be called from any thread, by the rules of the border.
+// Its body may be called from any thread, by the rules of the plugin ABI.
 unsafe impl Send for PluginLoop {}
 
 /// Why a plugin's call failed, in its own words.
@@ -209,7 +209,7 @@ impl CallState {
     }
 
     /// # Safety
-    /// The collider obeys the rules of the border.
+    /// The collider obeys the rules of the plugin ABI.
     unsafe fn give_collider(&self, port: u32, collider: *const abi::Collider) -> Result<(), String> {
         let library: Arc<dyn Send + Sync> = self.library.clone();
         let owner = self.library.words();

@@ -71,7 +71,7 @@ struct ForeignObject {
     stage: *mut c_void,
 }
 
-// Its functions may be called from any thread, by the rules of the border.
+// Its functions may be called from any thread, by the rules of the plugin ABI.
 unsafe impl Send for ForeignObject {}
 unsafe impl Sync for ForeignObject {}
 

@@ -187,7 +187,7 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
 /// where it is called first.
 ///
 /// # Safety
-/// The library is trusted to obey the rules of the border.
+/// The library is trusted to obey the rules of the plugin ABI.
 #[cfg(unix)]
 unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
     use libloading::os::unix::{Library as Opened, RTLD_LOCAL, RTLD_NOW};
@@ -197,7 +197,7 @@ unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
 /// Opens a library; this system looks for all functions at once.
 ///
 /// # Safety
-/// The library is trusted to obey the rules of the border.
+/// The library is trusted to obey the rules of the plugin ABI.
 #[cfg(not(unix))]
 unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
     unsafe { Library::new(file) }
@@ -206,7 +206,7 @@ unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
 /// Loads `file`, or its copy where it is loaded `from` one.
 ///
 /// # Safety
-/// The library is trusted to obey the rules of the border.
+/// The library is trusted to obey the rules of the plugin ABI.
 unsafe fn open((from, file): (&Path, &Path), symbols: &[Vec<u8>], digest: Digest) -> Result<Plugin, Why> {
     let library = unsafe { opened(from) }.map_err(|e| worded(&e, from, file))?;
     let declared = symbols

@@ -4,9 +4,9 @@
 //! A stage that improves (`toile_core::Stage::improves`) gives back the kinds that it takes: a
 //! garment in another pose, on a finer mesh, at rest again. The result that it improves on is the
 //! last garment at rest that a stage made which does not improve. All improving stages since then
-//! are undone together, for none of them leaves a result by itself: a garment in another pose is
-//! good once it has settled. Each of them then passes on what it was given, and the run goes on
-//! from the first of them.
+//! are undone together, because none of them gives a result by itself: a garment in another pose is
+//! a result only once it is at rest again. Each of them then passes on its input, and the run
+//! continues from the first of them.
 
 use super::node::WORK;
 use super::steps::{PipelineRun, RanStage, StageOutcome};
@@ -17,8 +17,8 @@ use toile_core::artifact::{ArtifactType, Garment, Kind};
 use toile_core::{ErrorCode, Event, Feed, Node, PortValue, Remarks};
 
 impl PipelineRun<'_> {
-    /// Undoes what failed at stage `index`, where it improves on a result that is at rest; the
-    /// runner then goes on behind the steps that are left.
+    /// Undoes the failed stage `index` if it improves on a result that is at rest; the runner then
+    /// continues after the remaining steps.
     ///
     /// Errors: the failure itself, where there is no such result, or where the user asked to stop.
     pub(super) fn undo(&mut self, index: usize, failure: RunError) -> Result<(), RunError> {

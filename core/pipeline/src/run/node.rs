@@ -56,8 +56,8 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
     }
 }
 
-/// The files that a plugin's stage is given by name: it reads them on its own side of the border,
-/// and one built for ABI 1.0 cannot say which.
+/// The files that a plugin's stage is given by name: it reads them on its own side of the plugin
+/// ABI, and one built for ABI 1.0 cannot say which.
 fn named_files(node: &Node, cx: &Context) -> Vec<(String, Option<Digest>)> {
     if node.card.plugin.is_none() {
         return Vec::new();

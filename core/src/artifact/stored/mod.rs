@@ -1,8 +1,8 @@
 //! Artifacts as records: named fields of plain numbers, texts and further records.
 //!
-//! One form serves the cache, where a record becomes bytes ([`encode`], [`decode`]), and the border
-//! of a plugin, where its lists are lent as they lie in memory. Whoever reads a record asks for
-//! fields by name, so that a newer writer may add fields that an older reader does not know.
+//! One form serves the cache, where a record becomes bytes ([`encode`], [`decode`]), and the plugin
+//! ABI, where its lists are lent as they lie in memory. Whoever reads a record asks for fields by
+//! name, so that a newer writer may add fields that an older reader does not know.
 //!
 //! Cost: a record borrows the artifact's lists; bytes cost one copy each way. Limits: little-endian
 //! machines, nesting up to [`MAX_DEPTH`].

@@ -16,7 +16,7 @@ const LANCZOS_STEPS: usize = 48;
 /// Rounds of subspace iteration: the lowest frequency of a strip is then good to nine digits.
 const SUBSPACE_ROUNDS: usize = 30;
 
-/// Greatest angular frequency at `x`, rad/s; from below, by at most its third digit.
+/// Greatest angular frequency at `x`, rad/s; a lower bound, right to three digits.
 #[must_use]
 pub fn omega_max(model: &Model, x: &[Vec3]) -> f64 {
     let k = model.stiffness(x, Projection::PositiveSemiDefinite);

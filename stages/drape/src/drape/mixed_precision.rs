@@ -1,7 +1,7 @@
 //! Rule `mixed-precision`: the factor of each step's matrix in single precision, where that solves
 //! the step.
 //!
-//! Fact: every step's solution is held against its matrix in double precision, and refined; where
+//! Fact: every step's solution is compared with its matrix in double precision, and refined; where
 //! more than a ten-thousandth of the right side is left, the matrix is too ill conditioned, and is
 //! factored anew in double precision. Forces, energies and the proof of rest are of double
 //! precision always. Tolerance: the state keeps the same speed of rest; which of its neighbours a

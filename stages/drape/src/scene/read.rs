@@ -23,7 +23,7 @@ use toile_geometry::volume::Aabb;
 /// them.
 ///
 /// The form is described in docs/reference/scene.md; benchmarks of other programs use it as well.
-/// The garment's vertices keep the order of the file, so that a result can be held against it. A
+/// The garment's vertices keep the order of the file, so that a result can be compared with it. A
 /// body that exporters left with split vertices, doubled or flat triangles is mended, as `BodyObj`
 /// does.
 #[stage(

@@ -7,8 +7,8 @@ use crate::pair::Pair;
 use crate::volume::BoundingVolume;
 
 impl<V: BoundingVolume> ClothTree<V> {
-    /// The same, where only triangles of `active` nodes look for what they may meet: what is not
-    /// active meets nothing else that is not.
+    /// The same, but only triangles with `active` nodes search for pairs: a pair without an active
+    /// node is not found.
     #[must_use]
     pub fn with_active(self, active: &[bool]) -> Self {
         Self { active: Some(self.active(active)), ..self }

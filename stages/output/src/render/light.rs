@@ -42,8 +42,8 @@ const LIFT: f64 = 0.006;
 const BIAS: f64 = 0.004;
 /// Around the garment's box, metres: what lies beyond casts no shadow on it worth the resolution.
 const REACH: f64 = 0.25;
-/// What stands before the sky gives this share of its light back: the inside of a garment is dim,
-/// not black.
+/// Surfaces that hide the sky return this share of its light: the inside of a garment is dim, not
+/// black.
 const BOUNCE: f64 = 0.3;
 /// The sky's light at the nadir against that at the zenith: floor and walls give light back.
 const NADIR: f64 = 0.45;

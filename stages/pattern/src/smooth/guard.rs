@@ -17,8 +17,8 @@ const ANGLE_FLOOR: f64 = 20.0;
 /// of the outline's tolerance; this is less than the other half.
 const OUTLINE_REACH: f64 = 0.4 * CHORD_TOLERANCE;
 
-/// The length of every stretch of the outline survives to this share, half of what is promised
-/// of named edges.
+/// The length of every stretch of the outline changes by at most this share, half of what is
+/// promised for named edges.
 const LENGTH_TOLERANCE: f64 = 5e-4;
 
 /// Positions of smoothed vertices after one step, before they are checked.

@@ -1,4 +1,4 @@
-//! Knobs held against a pipeline: which slot each acts on, and what it may be set to there.
+//! Knobs matched to a pipeline: which slot each acts on, and what it may be set to there.
 
 use super::{Knob, KnobBoard, KnobSlot, Setting};
 use crate::knobs::dial::{Dial, dial};

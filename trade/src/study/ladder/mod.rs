@@ -33,8 +33,8 @@ use std::time::{Duration, Instant};
 use toile_core::{Length, StageError};
 use toile_pipeline::cache::Cache;
 
-/// Factor between levels: twice the triangles, so that a further level is never far out of the
-/// budget.
+/// Factor between levels: twice the triangles, so that one more level never exceeds the budget by
+/// much.
 pub const RATIO: f64 = std::f64::consts::SQRT_2;
 /// Missing distance at which the reference counts as found, mm: a quarter of what a tape measure
 /// resolves.

@@ -67,11 +67,11 @@ impl Draft {
 /// The stages that could be made.
 #[derive(Debug, Default)]
 pub(crate) struct Finished {
-    /// Those that are fed by such, near and far.
+    /// Stages whose inputs, directly and indirectly, all come from stages that could be made.
     pub(crate) nodes: Vec<Node>,
-    /// Of each of these, whether all its values are its own.
+    /// For each of `nodes`, whether all values of its parameters are those that the user wrote.
     pub(crate) own: Vec<bool>,
-    /// The others whose values are their own, fed by nothing.
+    /// Other stages with only values that the user wrote, without inputs.
     pub(crate) alone: Vec<Node>,
 }
 

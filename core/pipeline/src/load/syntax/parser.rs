@@ -340,7 +340,7 @@ impl<'a> Parser<'a> {
         Ok(GroupEntry { key, value: self.value(depth + 1)? })
     }
 
-    /// `name:`, if that is what comes.
+    /// Reads `name:`, if that comes next.
     fn field(&mut self) -> Result<Option<Range<usize>>, SyntaxFault> {
         let from = self.at;
         if let Some(name) = self.name() {

@@ -113,7 +113,7 @@ pub enum StartError {
         seams: Vec<String>,
         /// Mean distance of the pairs, m.
         apart: f64,
-        /// The same with one side turned round, m.
+        /// The same with one side reversed, m.
         turned: f64,
     },
     /// A seam between pins at two places.

@@ -1,4 +1,4 @@
-//! What the engine refuses or does not reach, in the words of people who have a photo, a pattern or
+//! Messages for what the engine refuses or does not reach, for users who have a photo, a pattern or
 //! a scene.
 //!
 //! The main sentence names pieces, seams and places; the help is what this user can type or do;

@@ -129,7 +129,7 @@ impl MessageContext<'_> {
     }
 }
 
-/// Cloth that passes through cloth in the end.
+/// The message for cloth that passes through cloth in the end.
 pub(crate) fn crossing(pairs: usize) -> String {
     match pairs {
         1 => "cloth passes through cloth in one place".to_owned(),

@@ -11,9 +11,9 @@ use toile_core::prelude::*;
 
 /// A larger mask has this share of the best one's confidence.
 const ALSO: f64 = 0.6;
-/// It holds this share of the best one.
+/// A larger mask must contain this share of the best one.
 const HELD: f64 = 0.97;
-/// It is so many times as large.
+/// A larger mask must be at least so many times as large.
 const MORE: f64 = 1.15;
 
 /// The mask that is taken, with what speaks for it.

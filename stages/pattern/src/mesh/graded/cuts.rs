@@ -64,7 +64,7 @@ impl Sized<'_> {
     }
 }
 
-/// The cuts of every panel; fields are lowered to what the panels ask of each other.
+/// The cuts of every panel; fields are lowered to the lengths that the panels need of each other.
 pub(crate) fn agree(
     panels: &mut [Sized<'_>],
     plan: Option<&SewingPlan>,

@@ -25,7 +25,7 @@ pub(crate) struct Range {
     pub fine: f64,
     /// The longest.
     pub edge: f64,
-    /// Growth of the length, metres a metre.
+    /// Growth of the length, metres per metre.
     pub grading: f64,
 }
 

@@ -30,7 +30,7 @@ const MOST_PIECES: usize = 500;
 /// Layers that have a meaning for a piece, by the standards; what is drawn on others is reported.
 const KNOWN: std::ops::RangeInclusive<i32> = 1..=15;
 const KNOWN_FINE: std::ops::RangeInclusive<i32> = 80..=87;
-/// Most things left out of a file that are reported one by one.
+/// Greatest number of things left out of a file that are reported one by one.
 const MOST_TOLD: usize = 6;
 
 /// Reads the pieces of a garment from a DXF of AAMA or ASTM, in one size.

@@ -178,7 +178,7 @@ fn opening(pieces: &[Piece], ring: &Ring) -> Vec<At> {
 }
 
 /// The mean distance between the notches of an edge and those of a ring that is sewn to it, both
-/// from their start; none where they have not as many.
+/// from their start; none where their numbers differ.
 fn notches(pieces: &[Piece], edge: At, ring: &[At]) -> Option<f64> {
     let along = |(i, k): At| {
         let p = &pieces[i];

@@ -34,7 +34,7 @@ const MOST_PIECES: usize = 500;
 const MOST_OUTLINES: usize = 1_000;
 /// Curves shorter than this are none, metres.
 const POINT: f64 = 1e-7;
-/// Most places of left-out lines that are reported one by one.
+/// Greatest number of places of left-out lines that are reported one by one.
 const MOST_TOLD: usize = 4;
 /// Left-out lines shorter than this are not reported, metres.
 const SHORT: f64 = 0.01;
@@ -467,7 +467,7 @@ impl Drawn<'_> {
             return Ok(outline.sides.clone());
         }
         let mut sides = outline.sides.clone();
-        // What is cut on the fold may be drawn without its middle.
+        // A piece that is cut on the fold may be drawn without the line along the fold.
         if let (Some(fold), [side]) = (fold, &sides[..])
             && fold.has(side.start)
             && fold.has(side.end())
