@@ -33,7 +33,7 @@ pub(crate) fn inspect(pipeline: &Pipeline, options: &RunOptions) -> Result<(), R
 
 /// Why a pipeline is not run.
 pub(crate) enum RefusedPipeline {
-    /// What is asked of it cannot be.
+    /// The options ask for something that the pipeline does not have, such as a stage.
     Run(RunError),
     /// What its stages find wrong.
     File(Box<Faults>),

@@ -122,7 +122,7 @@ fn colour_is_for_terminals_unless_it_is_asked_for() {
     assert!(!coloured(&[], false) && !coloured(&["--color", "auto"], false));
     assert!(!coloured(&["--color", "never"], false));
     assert!(coloured(&["--color", "always"], false));
-    // What is asked for by name goes before what holds everywhere.
+    // What is requested by name goes before what holds everywhere.
     assert!(coloured(&["--color", "always"], true));
 }
 

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Clone, Default)]
 pub struct Cancel {
     flag: Arc<AtomicBool>,
-    /// Asked as well, where the flag lies on the other side of the plugin ABI.
+    /// A second flag that is checked as well: that of the program, in a plugin.
     also: Option<Arc<dyn Fn() -> bool + Send + Sync>>,
 }
 
@@ -46,11 +46,11 @@ impl Cancel {
 /// What a stage reports while it works.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
-    /// How far the stage has come, 0 to 1, and what it is at.
+    /// How far the stage has come, 0 to 1, and what it is doing.
     Progress {
         /// Share done.
         share: f64,
-        /// What it is at: `seam gap 3.2 mm, energy 0.41 J`.
+        /// What it is doing: `seam gap 3.2 mm, energy 0.41 J`.
         text: String,
     },
     /// A decision and the fact behind it.
@@ -297,7 +297,7 @@ impl Context {
         content
     }
 
-    /// Looks whether a file named by the pipeline is there to be read, without reading it.
+    /// Checks that a file named by the pipeline can be read, without reading it.
     ///
     /// Errors: those of [`Context::read`].
     pub fn look(&self, path: &str) -> Result<(), StageError> {

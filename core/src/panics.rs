@@ -1,8 +1,8 @@
 //! Panics as words.
 //!
-//! A panic is a bug of the program or of a stage, never of its input. It ends the work at hand with
-//! an error that says what was said and where in the source, and what to do about it; the program
-//! goes on to say so and to clean up.
+//! A panic is a bug of the program or of a stage, never of its input. It ends the present work with
+//! an error that has the panic's message, its place in the source and what to do; the program
+//! continues, so that it can report this and clean up.
 
 use std::any::Any;
 use std::collections::VecDeque;

@@ -71,7 +71,7 @@ pub struct Compared {
 }
 
 impl Certificate {
-    /// Of a judgement; a garment that is compared must hold, too.
+    /// The verdict of a judgement; a second garment that is compared must hold as well.
     #[must_use]
     pub fn new(
         inputs: Vec<InputFile>,

@@ -29,7 +29,7 @@ const FIRST: [&str; 2] = ["garment.glb", "result.obj"];
 /// Heights of people, metres.
 const HEIGHTS: (f64, f64) = (0.5, 2.5);
 
-/// What is asked for.
+/// What is requested.
 #[derive(Debug, Clone, Default)]
 pub struct AskedFiles {
     /// A garment's file, or the folder of a run.
@@ -48,7 +48,7 @@ pub struct AskedFiles {
     pub limits: CheckLimits,
 }
 
-/// The certificate of what is asked for, and the folder of the garment.
+/// The certificate of what is requested, and the folder of the garment.
 ///
 /// # Errors
 /// A file that cannot be read, with its place and a remedy.

@@ -59,7 +59,7 @@ pub fn by_pattern(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> G
     gaps
 }
 
-/// The seams of the pattern as pairs of vertices, where their sides have as many.
+/// The seams of the pattern as pairs of vertices, where both sides have equally many.
 #[must_use]
 pub fn pairs(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> Vec<GarmentSeam> {
     let length = |side: &[u32]| {

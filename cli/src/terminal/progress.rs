@@ -77,7 +77,7 @@ fn told(list: &Mutex<Vec<(String, String)>>, who: String, text: &str) {
     }
 }
 
-/// Runs `work` on the threads asked for; what it reports is shown line by line above a bar of the
+/// Runs `work` on the requested threads; what it reports is shown line by line above a bar of the
 /// budget.
 pub(crate) fn with_budget<T: Send>(
     study: &StudyArgs,

@@ -1,4 +1,4 @@
-//! The threads that a command works on: as many as are asked for, as the machine has cores, as the
+//! The threads that a command works on: as many as are requested, as the machine has cores, as the
 //! system gives.
 
 use crate::Streams;

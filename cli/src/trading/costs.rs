@@ -12,7 +12,7 @@ use toile_trade::cost::{
     note, shipped, sizes,
 };
 
-/// What is known of this machine's runs; read, and fitted, when it is first asked for.
+/// What is known of this machine's runs; read, and fitted, when it is first requested.
 #[derive(Debug)]
 pub(crate) struct KnownCosts {
     store: Option<CostStore>,

@@ -12,7 +12,7 @@ use toile_pipeline::{Pipeline, RunOptions};
 use toile_trade::knobs::source::Source;
 use toile_trade::measure::Bench;
 
-/// The pipeline with its source, checked; faults are shown, as JSON where asked for.
+/// The pipeline with its source, checked; faults are shown, as JSON where requested.
 pub(crate) fn opened<'a>(
     path: &Path,
     overrides: &Overrides,
@@ -64,7 +64,7 @@ pub(crate) fn failed(e: &StageError, streams: &mut Streams<'_>) -> u8 {
     e.code.exit_code()
 }
 
-/// The quality that is asked for.
+/// The quality that is requested.
 pub(crate) fn quality(overrides: &Overrides) -> Option<&str> {
     overrides.quality.as_deref()
 }

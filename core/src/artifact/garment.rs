@@ -85,7 +85,8 @@ pub struct SolveStatus {
 /// Other places from which the panels of a garment may be sewn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GarmentStart {
-    /// What is otherwise, in words that end "sewn ...": `with the legs where the file puts them`.
+    /// How this garment was sewn differently, in words that complete "sewn ...": `with the legs
+    /// where the file puts them`.
     pub told: String,
     /// Positions of all vertices, metres.
     pub positions: Vec<Point3>,

@@ -90,7 +90,7 @@ pub trait Artifact: Any + Send + Sync + Debug {
     fn check(&self) -> Result<(), String>;
     /// The figures that goldens and the report keep of it.
     fn measures(&self) -> Measures;
-    /// The artifact as a record of plain fields, by which it is stored and crosses the plugin ABI;
+    /// The artifact as a record of plain fields, in which form it is stored and passed to plugins;
     /// `None` for a service.
     fn record(&self) -> Option<store::Record<'_>> {
         None

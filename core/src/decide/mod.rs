@@ -8,8 +8,8 @@
 //! decisions by `fn decisions(&self, known: &Known<'_>) -> Vec<Decision>` beside its `run`. Stages
 //! of plugins tell none.
 //!
-//! `toile_pipeline::decide` asks all stages, and has one rule of its own: stages that nothing asked
-//! for depends on do not run.
+//! `toile_pipeline::decide` asks all stages, and has one rule of its own: stages that no requested
+//! result depends on do not run.
 
 mod decision;
 

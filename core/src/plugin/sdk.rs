@@ -21,7 +21,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
-/// A crate's stage tables, made when they are first asked for.
+/// A crate's stage tables, made when they are first requested.
 #[derive(Debug, Default)]
 pub struct Tables(OnceLock<Vec<u64>>);
 

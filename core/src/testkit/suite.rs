@@ -152,7 +152,7 @@ fn scene_value(scene: &ExampleScene, port: &InPort) -> Option<PortValue> {
 }
 
 type MakeExample = fn() -> Arc<dyn Artifact>;
-/// A kind with an artifact that is made where it is first asked for.
+/// A kind with an artifact that is made where it is first requested.
 type Own = (Kind, LazyLock<Arc<dyn Artifact>, MakeExample>);
 
 /// What stands on ports that no scene fills, a kind each. They are made once a process: the

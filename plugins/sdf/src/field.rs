@@ -25,7 +25,7 @@ const BAND: f64 = 2.0;
 const ROOM: (f64, f64) = (3.0, 0.05);
 /// Slices whose bands are made before the stop flag is looked at.
 const SLICES: usize = 4;
-/// Cells from the skin within which the closest point is asked for.
+/// Cells from the skin within which the closest point is requested.
 const NEAR: f64 = 1.5;
 /// No triangle yet.
 const NONE: u32 = u32::MAX;

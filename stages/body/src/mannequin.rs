@@ -19,8 +19,8 @@ const GROWING: [f64; 2] = [1.35, 1.55];
 const ARM: [f64; 2] = [0.366, 0.384];
 
 /// Height, bust, waist and hip of women, men and children where nothing is given, centimetres.
-/// Girths of a child follow from its height where that is given; those of the grown do not depend
-/// on it.
+/// Girths of a child follow from its height where that is given; those of adults do not depend on
+/// it.
 const USUAL: [SizeRow; 3] =
     [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
 

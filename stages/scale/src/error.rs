@@ -121,7 +121,7 @@ pub enum ScaleError {
     /// A resolution that is out of range.
     #[error("a resolution of {px_per_metre} px per metre is out of range; give 10 to 100000, or none")]
     Resolution {
-        /// What was asked for.
+        /// What was requested.
         px_per_metre: f64,
     },
 }

@@ -33,7 +33,7 @@ pub(crate) fn area(corners: &[Point2<f64>; 4]) -> f64 {
 
 /// The nearest meetings of an end that are followed.
 const MEETINGS: usize = 12;
-/// Of each segment so many pairs of meetings are looked at.
+/// Number of pairs of meeting segments that are examined per segment.
 const PAIRS: usize = 9;
 /// The least share of a side on ridges.
 const ON_RIDGES: f64 = 0.5;

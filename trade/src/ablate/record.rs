@@ -50,7 +50,7 @@ pub struct Ablation {
 pub struct EndedBudget {
     /// Runs that are done.
     pub done: usize,
-    /// Runs that were asked for.
+    /// Runs that were requested.
     pub all: usize,
     /// Decisions that were not reversed at all.
     pub not_measured: Vec<Unmeasured>,

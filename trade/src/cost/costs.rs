@@ -20,7 +20,7 @@ const TELLING_S: f64 = 1e-3;
 /// Runs of stages by which a machine's speed is known.
 const TELLING_RUNS: usize = 5;
 
-/// Laws of stages, each fitted when it is first asked for: a run asks for those of the stages that
+/// Laws of stages, each fitted when it is first requested: a run asks for those of the stages that
 /// it had to run.
 #[derive(Debug, Default)]
 pub struct Costs {

@@ -126,8 +126,8 @@ mod tests {
         let floor = |missing, start| reference(levels(), missing, start).floor();
         assert_eq!(floor(Some(0.2), Some(5.8)), Some(Floor { mm: 5.8, by: FloorBasis::Spread }));
         assert_eq!(floor(Some(0.2), Some(0.0)), Some(Floor { mm: 0.2, by: FloorBasis::Missing }));
-        // Levels that do not come nearer: quiet starts do not make them a reference. Half as fine
-        // again would be a third of the way to the limit at first order.
+        // Levels that do not converge are no reference, even if moved starts agree. A level half as
+        // fine again would cover a third of the distance to the limit at first order.
         assert_eq!(floor(None, Some(0.0)), Some(Floor { mm: 2.0 * 8.32, by: FloorBasis::Unordered }));
         // Quiet starts of one level do not make it known.
         let alone = reference(vec![moved(None)], None, Some(0.1));

@@ -41,7 +41,7 @@ pub fn refusal(trade: &Trade, wish: &Wish) -> Option<StageError> {
     below_floor(trade, wish).or_else(|| picks(trade, wish).is_empty().then(|| none_keeps(trade, wish)))
 }
 
-/// An error that the reference is too little known for.
+/// The error for a wish below the known accuracy of the reference.
 fn below_floor(trade: &Trade, wish: &Wish) -> Option<StageError> {
     let floor = trade.reference.floor()?;
     let asked = wish.max_error_mm.filter(|e| *e < floor.mm)?;

@@ -41,8 +41,9 @@ impl Prover<'_> {
         }
     }
 
-    /// As [`Prover::prove`], against a reference that was run already; settings in `known`, proved
-    /// before from every start, are not run again, and those that are proved now are added.
+    /// As [`Prover::prove`], against a reference that was run already; settings in `known`,
+    /// verified before from every start, are not run again, and those that are verified now are
+    /// added.
     ///
     /// Errors: no setting is proved.
     pub fn prove_against(

@@ -96,7 +96,7 @@ fn files(folder: &Path) -> io::Result<Vec<CacheFile>> {
         };
         for item in listing {
             let item = item?;
-            // A file that another run took away meanwhile does not count.
+            // A file that another run removed meanwhile does not count.
             let Ok(meta) = item.metadata() else { continue };
             match meta.is_dir() {
                 true => folders.push(item.path()),

@@ -78,7 +78,7 @@ type Fields<'t> = BTreeMap<String, (Range<usize>, &'t ValueTree)>;
 struct PipelineReader<'a> {
     text: &'a str,
     registry: &'a Registry,
-    /// True where stages may be missing since their plugin is refused.
+    /// True where stages may be missing because their plugin is refused.
     lacks_plugin: bool,
     faults: &'a mut Vec<Fault>,
     /// The stages read so far, by which those of one name are told apart.

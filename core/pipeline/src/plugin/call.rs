@@ -68,7 +68,7 @@ pub(super) struct CallState {
 #[derive(Clone)]
 struct OutputMemory {
     memory: Arc<Vec<u128>>,
-    /// As many bytes as were asked for.
+    /// As many bytes as were requested.
     bytes: usize,
 }
 
@@ -335,8 +335,8 @@ unsafe extern "C" fn parallel_for(
     let (done, wait) = channel();
     let sent = unsafe { call(ctx) }.messages.send(Message::Loop(PluginLoop { count, data, body, done }));
     if sent.is_err() || wait.recv().is_err() {
-        // Nobody waits for this call any more: it may run to its end, but not on the program's
-        // threads. A loop that was sent and then dropped has not been begun.
+        // The program no longer waits for this call: it may run to its end, but not on the
+        // program's threads. A loop that was sent and then dropped has not started.
         (0..count).for_each(|i| unsafe { body(data, i) });
     }
 }

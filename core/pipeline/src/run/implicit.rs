@@ -124,7 +124,8 @@ mod tests {
         }
     }
 
-    /// The vest with these stages at its end: what feeds the judgement, and what stands around it.
+    /// The vest with these stages at its end: the input of the judgement, and the order of the
+    /// stages.
     fn judged(end: &str) -> (String, Vec<String>) {
         let mut registry = kit::registry();
         registry.add::<LaidFlat>();

@@ -1,4 +1,4 @@
-//! Runs a pipeline: only what the asked outputs need, in file order, sets in parallel.
+//! Runs a pipeline: only what the requested outputs need, in file order, sets in parallel.
 
 mod exports;
 mod forecast;
@@ -196,7 +196,7 @@ fn unbroken<T>(node: &Node, work: impl FnOnce() -> Result<T, RunError>) -> Resul
     })
 }
 
-/// The writers' files and those of stages whose artifacts were asked for.
+/// The writers' files and those of stages whose artifacts were requested.
 fn files(run: &mut PipelineRun<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, RunError> {
     let mut files: Vec<OutputFile> = written(run)?.into_iter().flat_map(|(_, f)| f.0).collect();
     let nodes = run.pipeline.nodes.iter().enumerate();

@@ -36,7 +36,7 @@ struct EdgeCut {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ChainLink<'a> {
     pub edge: &'a EdgeRef,
-    /// Which of the parts between its cuts, from its start.
+    /// Number of the part between its cuts, counted from its start.
     pub part: usize,
     /// Whether the side runs along it from its end to its start.
     pub reversed: bool,

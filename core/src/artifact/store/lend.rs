@@ -16,7 +16,7 @@ pub trait Lend: std::fmt::Debug + Send + Sync {
     fn keep(&self, bytes: &[u8]) -> Option<KeptBytes>;
 }
 
-/// A lent list as a picture, where it lies; none where its owner cannot keep it.
+/// A lent list as a picture without a copy; none where its owner cannot keep it.
 pub(super) fn picture<P: Picture>(owner: &dyn Lend, bytes: &[u8], w: u32, h: u32) -> Option<Shared<P>> {
     if bytes.is_empty() || bytes.len() as u64 != u64::from(w) * u64::from(h) * u64::from(P::CHANNELS) {
         return None;

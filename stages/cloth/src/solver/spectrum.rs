@@ -1,5 +1,5 @@
 //! Extreme frequencies of a model about a state: the greatest bounds the explicit step, the lowest
-//! are its slow swings.
+//! are its slowest oscillations.
 //!
 //! Greatest: Lanczos on `M^-1/2 K M^-1/2`, full reorthogonalisation; 40 products give it to three
 //! digits. Lowest: subspace iteration with a factor of K.

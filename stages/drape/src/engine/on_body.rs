@@ -1,5 +1,5 @@
-//! How much of a garment is still in its place on the body: what slid off shows, whatever holds it
-//! up in the end.
+//! How much of a garment is still in its place on the body, whatever holds up the part that slid
+//! off.
 //!
 //! Method: for each connected piece of cloth, the height of its upper edge at the start, but no
 //! higher than the body under it, minus its height at the end. Of a piece that starts upright the

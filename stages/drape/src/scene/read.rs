@@ -49,7 +49,7 @@ pub struct Scene {
     pub units: Units,
 }
 
-/// Share of the stage's time that distances where they are asked for save, on the skirt.
+/// Share of the stage's time that distances where they are requested save, on the skirt.
 const SHARE: f64 = 0.75;
 
 #[stage]

@@ -20,7 +20,8 @@ const LEAST_TRANSPARENT: f64 = 0.02;
 /// From this share of its hull on, the opaque part is convex.
 const CONVEX: f64 = 0.97;
 
-/// Up to this share of the opaque part, what differs from it turned by half does not count.
+/// The opaque part counts as symmetric if at most this share of it differs from itself turned by
+/// 180 degrees.
 const SYMMETRIC: f64 = 0.03;
 
 /// The garment of a picture whose ground was cut away.

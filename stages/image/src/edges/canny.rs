@@ -33,7 +33,7 @@ pub struct Canny {
     #[param(default = 1.4, min = 0.3, max = 10.0, unit = "pixels", trades)]
     sigma: f64,
     /// How much smoother the outline is between its corners than the edge that was seen: 2 to 3
-    /// quietens the ragged rim of a small photo, 1 keeps every wave.
+    /// smooths the ragged rim of a small photo, 1 keeps every wave.
     #[param(default = 3.0, min = 0.5, max = 6.0)]
     smooth: f64,
 }

@@ -65,7 +65,7 @@ pub struct KnobBoard {
 /// A setting: the value of every knob that acts, by its key.
 pub type Setting = BTreeMap<String, String>;
 
-/// A setting in a line: `mesher.edge 12 mm, solver Rest`.
+/// A setting in a line: `mesher.edge 12 mm, solver StaticEquilibrium`.
 pub fn setting_words(setting: &Setting) -> String {
     let one = |(key, value): (&String, &String)| format!("{key} {}", value.trim_matches('"'));
     setting.iter().map(one).collect::<Vec<_>>().join(", ")

@@ -1,10 +1,10 @@
-//! The reference: the pipeline refined level by level until its garment stops moving.
+//! The reference: the pipeline refined level by level until its garment no longer changes.
 //!
 //! Level k divides every knob whose card says that less is finer (edge length, time step,
 //! tolerance) by sqrt(2)^k and multiplies those of which more is finer (counts of iterations) by
 //! it, from the pipeline's own values and with the pipeline's own stages. A power at which rounding
-//! leaves every resolution in space where it was is no level. What is no knob is part of the
-//! problem and stays. Levels end once the estimate of what is missing (`richardson`, on the
+//! leaves every resolution in space unchanged is no level. Parameters that are no knobs are part of
+//! the problem and stay. Levels end once the estimate of what is missing (`richardson`, on the
 //! distance that 95 % of the surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than
 //! any setting to be judged by it; or with the share of the budget that is theirs, which is then
 //! said, with the estimate, or that there is none.

@@ -76,7 +76,7 @@ pub(crate) struct Finished {
 }
 
 impl Finished {
-    /// Takes all stages out of the graph, where it is not that of the file.
+    /// Removes all inputs of the stages, for a graph that is not that of the file.
     pub(crate) fn apart(self) -> Self {
         let Finished { nodes, own, mut alone } = self;
         let of_file = nodes.into_iter().zip(own).filter(|(_, own)| *own).map(|(node, _)| node);

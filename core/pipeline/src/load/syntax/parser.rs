@@ -60,8 +60,8 @@ fn fault(message: impl Into<String>, span: Range<usize>) -> SyntaxFault {
 struct Parser<'a> {
     text: &'a str,
     at: usize,
-    /// The opening quote of the last text that runs over a line's end: often one that was to end
-    /// on its line.
+    /// The opening quote of the last text that runs over the end of a line: often the closing quote
+    /// is missing.
     long_text: Option<Range<usize>>,
     /// The last text in quotes that was read, whole.
     last_text: Option<Range<usize>>,

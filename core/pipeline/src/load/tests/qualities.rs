@@ -93,7 +93,7 @@ vest.ron:14:67: quality `C`: a quality cannot set `qualities`";
     assert_eq!(own.join("\n"), expected);
     assert!(!graph.is_empty(), "a stage in the wrong place is found");
     assert!(graph.iter().all(|l| l.contains(": quality `D`: ")), "{graph:?}");
-    // The same faults with `--set` and whichever quality is asked for, each once.
+    // The same faults with `--set` and whichever quality is requested, each once.
     let count = shown.lines().count();
     assert_eq!(set(&text, &["name=\"x\""]).unwrap_err().faults.len(), count);
     assert_eq!(at(&text, "D", &[]).unwrap_err().faults.len(), count);

@@ -153,7 +153,7 @@ fn find(parent: &mut [usize], mut t: usize) -> usize {
 }
 
 /// Rigidity by (kxx, kyy, kxy) to build the coupled hinges of each triangle with, so that its panel
-/// has the rigidity asked for.
+/// has the requested rigidity.
 pub(super) fn calibrated(sheet: &Sheet, rigidities: &[Rigidity]) -> Vec<Matrix3<f64>> {
     let size = rigidities.iter().map(|r| r.warp.max(r.weft)).fold(0.0, f64::max);
     let mut wanted: Vec<Matrix3<f64>> = rigidities.iter().map(Rigidity::tensor).collect();

@@ -71,7 +71,7 @@ impl Hysteresis {
 }
 
 impl Hold {
-    /// The turn from the held angle in slip tolerances, and the root of one plus its square.
+    /// The difference from the held angle in slip tolerances, and the root of one plus its square.
     fn turn(&self, angle: f64, held: f64) -> (f64, f64) {
         let turn = if self.tolerance > 0.0 { (angle - held) / self.tolerance } else { 0.0 };
         (turn, (1.0 + turn * turn).sqrt())

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 
 type Vec3 = Vector3<f64>;
 
-/// What proves that the cloth is at rest.
+/// Which step proves that the cloth is at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Proof {
     /// Any step in which nothing is fast.
@@ -43,7 +43,7 @@ pub struct NewtonOptions {
     pub non_static: f64,
     /// Farthest that a node may move in a step, m.
     pub farthest: f64,
-    /// What proves that the cloth is at rest.
+    /// Which step proves that the cloth is at rest.
     pub proof: Proof,
     /// Whether steps are made without a line search: cloth then slides over a rough surface, where
     /// some nodes never come to rest.
@@ -93,7 +93,7 @@ pub struct NewtonState {
     pub(crate) outcome: Outcome,
     /// The potentials of the last steps, for the non-monotone line search.
     pub(crate) history: Vec<f64>,
-    /// Whether the next step is a proof step, of [`REST_STEP`](super::to_rest::REST_STEP).
+    /// Whether the next step is a proof step, of length [`REST_STEP`](super::to_rest::REST_STEP).
     pub(crate) verifying: bool,
     /// Consecutive proof steps.
     pub(crate) proof_steps: usize,

@@ -118,7 +118,7 @@ pub enum StaticsError {
     /// The cloth still moves after all steps.
     #[error("{}", unrest(state, panel, *wanted))]
     NotAtRest {
-        /// The speed that was asked for, m/s.
+        /// The speed that was requested, m/s.
         wanted: f64,
         /// The panel with the greatest residual force.
         panel: String,

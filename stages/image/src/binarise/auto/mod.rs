@@ -9,7 +9,7 @@
 //! are put back (`thin`), wedges of ground between sleeve and side are opened (`wedge`), its
 //! boundary is cut at twice the size, inlets of ground between legs are opened up to their tips, it
 //! is set at the photo's own size, and a strip of ground between hem and frame is found (`frame`).
-//! The product of the evidence is the confidence. Below the least that is asked for, and where the
+//! The product of the evidence is the confidence. Below the least that is requested, and where the
 //! mask looks like a print on something larger (`larger`), the photo is refused with a picture of
 //! the doubt (`doubt`).
 //!

@@ -43,7 +43,7 @@ impl PiecesBy {
 impl PiecesBy {
     /// What is meant for this mesh.
     ///
-    /// Errors: what is asked for does not stand in the file.
+    /// Errors: what is requested does not stand in the file.
     pub(in crate::flat) fn resolved(self, mended: &Mended) -> Result<Self, StageError> {
         let mesh = &mended.mesh;
         let missing = |what: &str, instead: &str| {

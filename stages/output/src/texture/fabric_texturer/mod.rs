@@ -215,7 +215,7 @@ impl FabricTexturer {
         Ok(ClothPictures { tiles, sheets })
     }
 
-    /// The panels in their cloth: its pictures, then their normal maps where they are asked for.
+    /// The panels in their cloth: its pictures, then their normal maps where they are requested.
     fn dressed(&self, dress: &Dress<'_>, pictures: ClothPictures, cx: &Context) -> Result<Model, StageError> {
         let garment = dress.garment;
         let mut model = Model::default();

@@ -226,7 +226,7 @@ fn by_sheet<T: Send>(
     views.par_chunks(PER_SHEET).zip(spans.par_chunks(PER_SHEET)).map(one).collect()
 }
 
-/// A panorama, brought down to what the page shows of it.
+/// A panorama, reduced to what the page shows of it.
 fn read_panorama(file: &str, cx: &Context) -> Result<RgbImage, StageError> {
     let at = |e: StageError| e.at("panorama");
     let picture = cx.read(file).and_then(|bytes| decode(&bytes, file)).map_err(at)?.pixels;

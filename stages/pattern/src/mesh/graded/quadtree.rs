@@ -35,7 +35,7 @@ pub(crate) struct Quadtree {
 }
 
 impl Quadtree {
-    /// Over a box, cells as small as the field asks.
+    /// A quadtree over a box, with cells as small as the field requires.
     pub(crate) fn new((low, high): (Point2, Point2), field: &SizeField) -> Self {
         let (span, edge) = (high - low, field.range().edge);
         let count = |length: f64| ((length / edge - 1e-9).ceil() as i64).max(1);

@@ -70,7 +70,7 @@ pub(crate) struct TextRepairs {
 }
 
 impl TextRepairs {
-    /// Says of every value whether something in it was repaired.
+    /// Marks every value in which something was repaired.
     pub(crate) fn mark(&self, tree: &mut ValueTree) {
         tree.is_broken = self.list.iter().any(|r| r.is_in(&tree.span));
         if let (true, ValueShape::Group { entries, .. }) = (tree.is_broken, &mut tree.shape) {

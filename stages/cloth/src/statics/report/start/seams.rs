@@ -60,7 +60,7 @@ pub(super) fn check_order(scene: &Scene, start: &[Vec3]) -> Result<(), StartErro
     Err(StartError::Reversed { seams: found.into_iter().map(|(name, _)| name).collect(), apart, turned })
 }
 
-/// Names of the seams whose sides run in opposite directions, which may be meant.
+/// Names of the seams whose sides run in opposite directions, which may be intended.
 pub(crate) fn probably_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
     let outlines = Outlines::of(scene);
     let is_turned =
