@@ -64,7 +64,7 @@ impl ContractFinding {
         match self {
             ContractFinding::Kept(cases) => format!("{cases} cases answered"),
             ContractFinding::Broken(why) => why.clone(),
-            ContractFinding::Untried => "the suite cannot tell for what it takes and gives".into(),
+            ContractFinding::Untried => "the suite cannot test it for its kinds of input and output".into(),
         }
     }
 }

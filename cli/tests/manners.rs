@@ -80,7 +80,7 @@ fn more_threads_than_cores_are_bounded_and_that_is_told() {
     let cores = std::thread::available_parallelism().unwrap().get();
     let has = if cores == 1 { "1 core".to_owned() } else { format!("{cores} cores") };
     let told =
-        format!("warning: 1024 threads are asked for and this machine has {has}; it works on {cores}\n");
+        format!("warning: 1024 threads are requested and this machine has {has}; it works on {cores}\n");
     assert_eq!((code, err), (Some(0), told));
     let metrics = fs::read_to_string(dir.path().join("out/sheet/metrics.json")).unwrap();
     assert!(metrics.contains(&format!("\"threads\": {cores}")), "{metrics}");

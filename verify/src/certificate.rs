@@ -13,7 +13,7 @@ const VERSION: u32 = 1;
 
 /// Why it is not judged whether the garment is at rest.
 const REST: &str =
-    "not judged: forces need the fabric and the friction, which the files of a garment do not tell";
+    "not judged: forces need the fabric and the friction, which the files of a garment do not contain";
 
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -207,7 +207,7 @@ pub fn subject(
     let seams = match (pieces, garment.seams.is_empty()) {
         (_, false) => Ok(()),
         (Some(_), true) => Err(format!(
-            "\"{FILE}\" tells no seams: run the pipeline again, or name the pattern with `--pattern`"
+            "\"{FILE}\" has no seams: run the pipeline again, or name the pattern with `--pattern`"
         )),
         (None, true) => Err("no pattern was given: name one with `--pattern`".to_owned()),
     };

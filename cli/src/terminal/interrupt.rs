@@ -103,7 +103,7 @@ fn cut_off(after: Duration) -> ! {
     last_words::say(
         ErrorCode::Cancelled,
         &message,
-        "the program was ended there; files that were written before are whole",
+        "the program was stopped there; files that were written before are complete",
     );
     last_words::leave(exit::STOPPED)
 }

@@ -158,7 +158,7 @@ fn shown<T: Send, M: Send>(
         let worker = match worker {
             Ok(worker) => worker,
             Err(e) => {
-                let message = format!("there is no thread for a measurement: {e}");
+                let message = format!("cannot start a thread for a measurement: {e}");
                 return (Err(StageError::internal(message)), Vec::new());
             }
         };
@@ -166,7 +166,9 @@ fn shown<T: Send, M: Send>(
             let line = told(bar, message);
             bar.suspend(|| streams.notice(&line));
         }
-        worker.join().unwrap_or_else(|_| (Err(StageError::internal("the measurement broke off")), Vec::new()))
+        worker
+            .join()
+            .unwrap_or_else(|_| (Err(StageError::internal("the measurement ended unexpectedly")), Vec::new()))
     });
     bar.finish_and_clear();
     of_threads.into_iter().for_each(|words| streams.warn(words));

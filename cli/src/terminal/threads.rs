@@ -50,7 +50,7 @@ pub(crate) fn pool_of(asked: Option<u16>, cores: usize) -> (Pool, Vec<String>) {
     let most = asked.map_or(cores, usize::from);
     if most > cores {
         told.push(format!(
-            "{most} threads are asked for and this machine has {}; it works on {cores}",
+            "{most} threads are requested and this machine has {}; it works on {cores}",
             cores_in_words(cores)
         ));
     }
@@ -85,7 +85,7 @@ mod tests {
     fn threads_are_bounded_by_cores_and_that_is_told() {
         let (pool, told) = pool_of(Some(1024), 2);
         assert_eq!(pool.unwrap().current_num_threads(), 2);
-        assert_eq!(told, ["1024 threads are asked for and this machine has 2 cores; it works on 2"]);
+        assert_eq!(told, ["1024 threads are requested and this machine has 2 cores; it works on 2"]);
         let (pool, told) = pool_of(Some(2), 4);
         assert_eq!((pool.unwrap().current_num_threads(), told.len()), (2, 0));
         let (pool, told) = pool_of(None, 3);

@@ -15,16 +15,16 @@ pub(super) fn type_fault(text: &str, doc: &ParamDoc, e: &ron::error::SpannedErro
     let message = match &e.code {
         E::IntegerOutOfBounds => {
             let range = text.parse().ok().and_then(|x| check_number(x, doc).err());
-            range.unwrap_or_else(|| format!("`{name}` wants {wants}: {reason}"))
+            range.unwrap_or_else(|| format!("`{name}` must be {wants}: {reason}"))
         }
         // The type's own message names the value; that of the parser names what it expected.
         E::Message(_) => format!("`{name}`: {reason}"),
         E::NoSuchStructField { .. } | E::DuplicateStructField { .. } => format!("{reason} in `{name}`"),
-        E::InvalidValueForType { expected, found } => format!("`{name}` wants {expected}, found {found}"),
+        E::InvalidValueForType { expected, found } => format!("`{name}` must be {expected}, found {found}"),
         code if expected(code).is_some() => {
-            format!("`{name}` wants {wants}, found {}", found(text, offset, code))
+            format!("`{name}` must be {wants}, found {}", found(text, offset, code))
         }
-        _ => format!("`{name}` wants {wants}: {reason}"),
+        _ => format!("`{name}` must be {wants}: {reason}"),
     };
     ParamFault { message, reason, hint: ron_hint(&e.code), offset }
 }

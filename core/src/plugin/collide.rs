@@ -210,7 +210,7 @@ pub unsafe fn take(
     let read_card = table.card.filter(|_| whole).ok_or("the collider lacks a function")?;
     let mut card = abi::ColliderCard::default();
     if unsafe { read_card(collider.this, &mut card) } != abi::OK {
-        return Err("the collider does not tell its settings".into());
+        return Err("the collider does not give its settings".into());
     }
     let signature = unsafe { text(collider.signature)? }.to_owned();
     let card = ColliderCard {

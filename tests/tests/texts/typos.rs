@@ -23,7 +23,7 @@ const SLIPS: [Slip; 32] = [
     ("Scene(file:", "Scene(^fiel:", "unknown parameter `fiel`", "did you mean `file`?"),
     ("stages: [", "^stagse: [", "unknown field `stagse`", "did you mean `stages`?"),
     ("fabric: Preset", "^fabirc: Preset", "unknown field `fabirc`", "did you mean `fabric`?"),
-    ("texture: Check", "texture: ^Chekc", "`texture` wants ", "did you mean `Check`?"),
+    ("texture: Check", "texture: ^Chekc", "`texture` must be ", "did you mean `Check`?"),
     // values
     (
         "start_offset: \"2 cm\"",
@@ -32,8 +32,8 @@ const SLIPS: [Slip; 32] = [
         "",
     ),
     ("smooth: 1", "smooth: ^9", "`smooth` is 9, above its greatest value ", ""),
-    ("smooth: 1", "smooth: ^\"1\"", "`smooth` wants a number, found `\"1\"`", ""),
-    ("hysteresis: true", "hysteresis: ^yes", "`hysteresis` wants true | false, found `yes`", ""),
+    ("smooth: 1", "smooth: ^\"1\"", "`smooth` must be a number, found `\"1\"`", ""),
+    ("hysteresis: true", "hysteresis: ^yes", "`hysteresis` must be true | false, found `yes`", ""),
     // what lies outside the file
     ("/front.jpg\"", "/fornt.jpg\"", "Photos: cannot read ", ""),
     (
@@ -51,7 +51,7 @@ const SLIPS: [Slip; 32] = [
     (
         "\"back\":  MirrorOf(\"front\")",
         "\"back\":  ^MirrorOf(\"frnt\")",
-        "Photos: photo \"back\" is to mirror \"frnt\", which there is not",
+        "Photos: photo \"back\" is to mirror \"frnt\", which does not exist",
         "did you mean \"front\"?",
     ),
     ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),

@@ -189,8 +189,8 @@ impl RuleVerdict {
             RuleVerdict::Holds => "borne out",
             RuleVerdict::ChangesMore => "NOT borne out: changes more than its tolerance",
             RuleVerdict::SavesNothing => "NOT borne out: saves nothing that can be measured",
-            RuleVerdict::Needed => "borne out: turned round, the pipeline fails",
-            RuleVerdict::Cut => "not decided: turned round, the run was stopped at the limit",
+            RuleVerdict::Needed => "borne out: reversed, the pipeline fails",
+            RuleVerdict::Cut => "not decided: reversed, the run was stopped at the limit",
         }
     }
 }

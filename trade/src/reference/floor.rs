@@ -42,7 +42,7 @@ impl Floor {
     pub fn words(&self) -> String {
         let why = match self.by {
             FloorBasis::Nothing => {
-                return "nothing tells how well the reference is known: it was not refined".into();
+                return "the accuracy of the reference is not known: it was not refined".into();
             }
             FloorBasis::Missing => "so much is missing from its finest level to the limit of its order",
             FloorBasis::Unordered => "its levels show no order, and at first order so much is missing",
@@ -153,7 +153,7 @@ mod tests {
         );
         assert_eq!(
             words(FloorBasis::Nothing),
-            "nothing tells how well the reference is known: it was not refined"
+            "the accuracy of the reference is not known: it was not refined"
         );
         assert_eq!(
             words(FloorBasis::Spread),

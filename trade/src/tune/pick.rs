@@ -45,7 +45,7 @@ pub fn refusal(trade: &Trade, wish: &Wish) -> Option<StageError> {
 fn below_floor(trade: &Trade, wish: &Wish) -> Option<StageError> {
     let floor = trade.reference.floor()?;
     let asked = wish.max_error_mm.filter(|e| *e < floor.mm)?;
-    let message = format!("an error of at most {asked} mm cannot be proved: {}", floor.words());
+    let message = format!("an error of at most {asked} mm cannot be verified: {}", floor.words());
     // What is printed is what can be asked for.
     let least = (floor.mm * 100.0).ceil() / 100.0;
     let hint = match least.is_finite() {

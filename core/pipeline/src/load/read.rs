@@ -143,7 +143,7 @@ impl PipelineReader<'_> {
         }
         let parsed = ron_options().from_str(self.at(&value.span)).ok();
         if parsed.is_none() {
-            self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
+            self.fault("bad_value", format!("`{field}` must be text in quotes"), &value.span);
         }
         parsed
     }
@@ -153,7 +153,7 @@ impl PipelineReader<'_> {
             if list.is_broken {
                 return vec![Draft::unknown(&list.span)];
             }
-            self.fault("bad_value", "`stages` wants a list, `[Otsu(), ...]`", &list.head());
+            self.fault("bad_value", "`stages` must be a list, `[Otsu(), ...]`", &list.head());
             return vec![Draft::unknown(&list.span)];
         };
         if entries.is_empty() {
@@ -253,7 +253,8 @@ impl PipelineReader<'_> {
         let picked = pick(&fitting, &self.before, from).or_else(|| self.registry.card(name));
         let (fault, meant) = match (picked, section) {
             (Some(card), Some((field, role))) if !names.contains(&name) => {
-                let message = format!("`{field}` wants a {}, `{name}` is a {}", noun(role), noun(card.role));
+                let message =
+                    format!("`{field}` must be a {}, `{name}` is a {}", noun(role), noun(card.role));
                 let known = (!names.is_empty()).then(|| format!("there is {}", toile_core::quoted(&names)));
                 (Fault::new("wrong_role", message).hint(known), names.first().copied())
             }

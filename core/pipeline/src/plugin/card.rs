@@ -164,7 +164,7 @@ unsafe fn read_out(p: &abi::Port) -> Result<OutPort, String> {
 unsafe fn kind(p: &abi::Port) -> Result<Kind, String> {
     let word = unsafe { text(p.kind)? };
     match kind_named(word) {
-        Some(kind) if kind == RunLog::KIND => Err("a run log does not cross to plugins".into()),
+        Some(kind) if kind == RunLog::KIND => Err("a run log cannot be passed to plugins".into()),
         Some(kind) => Ok(kind),
         None => Err(format!("there is no kind `{word}`")),
     }

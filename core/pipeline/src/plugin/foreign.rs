@@ -126,7 +126,7 @@ impl ForeignType {
         let told = call.take_failure().unwrap_or_default();
         let message = match told.message.as_str() {
             "" => card::out_of_range(value, doc)
-                .unwrap_or_else(|| format!("`{}` wants a {}", doc.name, doc.kind)),
+                .unwrap_or_else(|| format!("`{}` must be a {}", doc.name, doc.kind)),
             message => message.to_owned(),
         };
         let reason = if told.about.is_empty() { message.clone() } else { told.about };

@@ -244,7 +244,7 @@ unsafe fn handshake(declared: *const abi::Declaration) -> Result<abi::Declaratio
     let (major, minor) = unsafe { ((*declared).major, (*declared).minor) };
     if major != abi::MAJOR || minor > abi::MINOR {
         let spoken = format!(
-            "it speaks ABI {major}.{minor}, this program speaks {0}.0 to {0}.{1}",
+            "it is built for ABI {major}.{minor}, this program supports {0}.0 to {0}.{1}",
             abi::MAJOR,
             abi::MINOR
         );

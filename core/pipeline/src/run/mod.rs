@@ -247,7 +247,7 @@ pub fn plan(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Option<Stri
     let needed = pipeline.needed_for(&asked);
     let reason = || match &options.until {
         Some(until) => format!("not needed until {until}"),
-        None => "nothing asked for depends on it".to_owned(),
+        None => "no requested result depends on it".to_owned(),
     };
     Ok(needed.into_iter().map(|needed| (!needed).then(reason)).collect())
 }

@@ -46,7 +46,7 @@ pub(super) fn rule(precision: FactorPrecision, continued: bool, size: &Size) -> 
         state: State::Simplified,
         what: "double precision of each step's factor: only where single does not solve the step".into(),
         fact: format!(
-            "about {triangles:.0} triangles, whose matrix tells at each step how well it is solved"
+            "about {triangles:.0} triangles, whose matrix shows at each step how well it is solved"
         ),
         tolerance: Tolerance::Distance(if continued { APART.0 } else { APART.1 }),
         saves: Saves::Share(SHARE),
@@ -63,7 +63,7 @@ mod tests {
     fn it_speaks_where_precision_is_mixed_and_there_is_cloth() {
         let size = Size::new().with(Quantity::Triangles, 4_673.0);
         let told = rule(FactorPrecision::Mixed, true, &size).map(|d| (d.fact, d.tolerance));
-        let words = "about 4673 triangles, whose matrix tells at each step how well it is solved".to_owned();
+        let words = "about 4673 triangles, whose matrix shows at each step how well it is solved".to_owned();
         assert_eq!(told, Some((words, Tolerance::Distance(0.008))));
         assert_eq!(
             rule(FactorPrecision::Mixed, false, &size).map(|d| d.tolerance),

@@ -120,7 +120,7 @@ fn wrong_sets_are_refused() {
     let text = |photos: &str| folder.read(photos).unwrap_err();
     assert_eq!(text("{}").to_string(), "there are no photos");
     let error = text(r#"{"back": MirrorOf("fornt"), "front": (file: "a.png")}"#);
-    assert_eq!(error.to_string(), "photo \"back\" is to mirror \"fornt\", which there is not");
+    assert_eq!(error.to_string(), "photo \"back\" is to mirror \"fornt\", which does not exist");
     assert_eq!(error.hint.unwrap(), "did you mean \"front\"? the photos are \"back\", \"front\"");
     let error = text(r#"{"../front": (file: "a.png")}"#);
     assert_eq!(error.to_string(), "a photo is named \"../front\", as no file can be");

@@ -122,7 +122,7 @@ pub(super) fn broken_off(status: ExitStatus, words: &[u8], cancel: &Cancel) -> M
     let last: String = last.map_or_else(String::new, |l| format!(": {l}")).chars().take(LAST_WORDS).collect();
     let e = StageError::new(ErrorCode::Internal, format!("the run's own process {how}{last}"));
     Missed::Failed(match signal {
-        Some(KILL) => e.hint("a system that runs out of memory ends a process so"),
+        Some(KILL) => e.hint("a system that is out of memory ends processes like this"),
         _ => e,
     })
 }

@@ -34,7 +34,7 @@ pub enum Unsolvable {
     Flat,
     /// The forces on it differ too much in size.
     #[error(
-        "the forces on it are too far apart to be told from each other; look for stiffness, density and lengths beyond those of cloth"
+        "the forces on it differ too much in size to be balanced; look for stiffness, density and lengths beyond those of cloth"
     )]
     Apart,
 }

@@ -118,7 +118,7 @@ pub enum StartError {
     },
     /// A seam between pins at two places.
     #[error(
-        "seam '{seam}' sews together vertices that are pinned {:.1} mm apart; pin them at one place, or let one of them go",
+        "seam '{seam}' sews together vertices that are pinned {:.1} mm apart; pin them at one place, or unpin one of them",
         1e3 * gap
     )]
     PinnedApart {

@@ -152,6 +152,6 @@ fn no_step(why: Unsolvable) -> (&'static str, &'static str) {
         Unsolvable::Flat => {
             ("has no cloth around it where it starts", "place the piece as large as it is cut")
         }
-        Unsolvable::Apart => ("feels forces that are too far apart to be balanced", BEYOND_CLOTH),
+        Unsolvable::Apart => ("has forces that differ too much in size to be balanced", BEYOND_CLOTH),
     }
 }

@@ -47,7 +47,7 @@ impl PiecesBy {
     pub(in crate::flat) fn resolved(self, mended: &Mended) -> Result<Self, StageError> {
         let mesh = &mended.mesh;
         let missing = |what: &str, instead: &str| {
-            let e = StageError::invalid(format!("the file has no {what} to tell the pieces by"));
+            let e = StageError::invalid(format!("the file has no {what} to separate the pieces by"));
             Err(e.hint(format!("{instead}, or write another word for `pieces`, such as `Auto`")).at("pieces"))
         };
         let has_uv = mesh.corners.iter().flatten().all(|c| *c != NO_POINT);

@@ -214,7 +214,7 @@ fn pack(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, StageError> {
     let total = 12 + 8 + json.len() + 8 + binary.len();
     let length = |n: usize| {
         let hint = "lower `size` of the texturer or make the mesh coarser";
-        u32::try_from(n).map_err(|_| StageError::invalid("the model passes glTF's 4 GiB").hint(hint))
+        u32::try_from(n).map_err(|_| StageError::invalid("the model exceeds glTF's 4 GiB").hint(hint))
     };
     let mut file = Vec::with_capacity(total);
     file.extend_from_slice(b"glTF");

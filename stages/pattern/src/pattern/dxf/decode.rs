@@ -32,7 +32,7 @@ pub(super) fn text(bytes: &[u8], told: &mut Remarks) -> String {
         (_, Some(_), Some(text)) if wrong => return text.to_owned(),
         (Some(page), Some(_), _) if wrong => told
             .warnings
-            .push(format!("some letters are none of the code page {page} that the file names: they are read as \u{fffd}")),
+            .push(format!("some letters are not in the code page {page} that the file names: they are read as \u{fffd}")),
         (Some(page), Some(_), _) => told.notes.push(format!("names are read in the file's code page, {page}")),
         (Some(page), None, _) => told.warnings.push(format!(
             "the file's code page, \"{page}\", is not known: names are read as {}; look whether they are right",
