@@ -89,7 +89,7 @@ pub struct Evidence<'a> {
 }
 
 impl Evidence<'_> {
-    /// What a decision saves, by the best that is known.
+    /// What a decision saves, from the best source that is known.
     pub fn saving(&self, decided: &StageDecision) -> Saving {
         self.measured(decided).unwrap_or_else(|| match decided.decision.saves {
             Saves::Share(share) => self.estimated(decided, share),

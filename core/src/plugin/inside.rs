@@ -5,7 +5,7 @@
 //! that a plugin that ends it is named. And a program that is asked to stop says what did not.
 //!
 //! Every call into a plugin notes itself for its thread, which costs two stores; calls that may be
-//! long note themselves for all threads too. Limits: `_exit`, `abort` and a fault of memory pass no
+//! long note themselves for all threads too. Limits: `_exit`, `abort` and a memory fault call no
 //! handler and are not caught.
 
 use std::cell::Cell;
@@ -83,7 +83,7 @@ unsafe extern "C" {
 /// For a program that ends by returning from `main` or by [`end`] alone.
 pub fn name_who_exits(last_words: LastWords) {
     if LAST_WORDS.set(last_words).is_ok() {
-        // A C library that takes no more handlers leaves the program as it was.
+        // If the C library accepts no more handlers, nothing changes.
         let _ = unsafe { atexit(at_exit) };
         #[cfg(target_os = "linux")]
         let _ = unsafe { at_quick_exit(at_exit) };

@@ -62,9 +62,9 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
         Vec::new()
     }
 
-    /// What the user should look at before anything runs, such as a name of no edge of a file, each
-    /// at its own parameter. It is asked after [`Stage::faults`] found nothing, and must be as
-    /// quick.
+    /// What the user should look at before anything runs, such as a name that no edge of a file
+    /// has, each at its own parameter. It is called after [`Stage::faults`] found nothing, and must
+    /// be as quick.
     fn warnings(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         Vec::new()
     }

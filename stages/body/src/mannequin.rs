@@ -147,8 +147,7 @@ impl Mannequin {
     }
 }
 
-/// How far a figure that is not stated is grown up at a height, metres: 0 for a child, 1 for a
-/// grown person.
+/// Maturity of a figure that is not stated, by its height, metres: 0 for a child, 1 for an adult.
 fn grown(height: f64) -> f64 {
     let [child, grown] = GROWING;
     ((height - child) / (grown - child)).clamp(0.0, 1.0)
@@ -204,7 +203,7 @@ fn check(size: &FigureSize) -> Result<(), StageError> {
         ("neck", size.neck, "a bust", size.bust, (0.30, 0.52)),
         ("arm", size.arm, "a height", h, (0.25, 0.40)),
         ("inseam", size.inseam, "a height", h, (0.36, 0.52)),
-        // From radians, 30 degrees come back with the last digits of a rounding.
+        // 30 degrees converted from radians have rounding in their last digits.
         ("arm_angle", (size.arm_angle.to_degrees() * 1e9).round() / 1e9, "", 1.0, (30.0, 75.0)),
     ];
     rules.into_iter().try_for_each(|(name, value, to, base, (lo, hi))| {

@@ -15,7 +15,7 @@ const SHIPPED_RUNS: f64 = 2.0;
 const OTHER_MACHINE: f64 = 0.35;
 /// How far stages of a role differ, where a stage has no record of its own.
 const OTHER_STAGE: f64 = 0.7;
-/// Shorter work says nothing of a machine's speed, seconds.
+/// Shorter runs do not measure a machine's speed, seconds.
 const TELLING_S: f64 = 1e-3;
 /// Runs of stages by which a machine's speed is known.
 const TELLING_RUNS: usize = 5;

@@ -91,8 +91,8 @@ pub fn prove(
     Ok(proved)
 }
 
-/// The pipeline file with the proved qualities in its field, comments and order kept. Qualities
-/// that are there already stay, but where `--set` changes the file that they were measured on.
+/// The pipeline file with the verified qualities in its field, comments and order kept. Qualities
+/// that are there already stay, unless `--set` changes the file that they were measured on.
 ///
 /// Errors: the settings do not fit the file any more.
 pub fn written(

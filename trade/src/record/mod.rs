@@ -60,7 +60,8 @@ pub struct Trade {
     pub reference: Reference,
     /// Settings in the order in which they were measured; the first is the pipeline's own.
     pub points: Vec<Point>,
-    /// Indices of points that none beats in time and distance (95 %), by ascending time.
+    /// Indices of the points that no other beats in both time and distance (95 %), by ascending
+    /// time.
     pub front: Vec<usize>,
 }
 

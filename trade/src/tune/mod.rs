@@ -29,7 +29,7 @@ use crate::record::Trade;
 use toile_core::StageError;
 use toile_pipeline::{Override, Pipeline};
 
-/// Holds a record against the pipeline that it is to be used for.
+/// Checks that a record fits the pipeline that it is to be used for.
 ///
 /// Errors: it holds no setting; it was measured by another version or on another pipeline, or
 /// before a stage, a parameter or a file changed.

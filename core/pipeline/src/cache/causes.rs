@@ -134,7 +134,7 @@ impl Cache {
         let file = Path::new(&pipeline.file);
         let full = file.canonicalize().unwrap_or_else(|_| file.to_owned());
         let hex = Digest::of(full.display().to_string().as_bytes()).hex();
-        // An entry's name may hold what no file's name may.
+        // An entry's name may contain characters that no file name may contain.
         let entry =
             if entry.is_empty() { String::new() } else { Digest::of(entry.as_bytes()).hex()[..16].into() };
         self.store.root.join("last").join(&hex[..16]).join(format!("{id}.{entry}"))

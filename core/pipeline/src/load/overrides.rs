@@ -128,7 +128,8 @@ impl Edit {
     }
 }
 
-/// What one override does to the text, and where in its value the value proper begins.
+/// The edit of the text for one override, and the offset at which the user's value begins within
+/// the inserted text.
 fn edit(text: &str, tree: &ValueTree, registry: &Registry, given: Given<'_>) -> Result<(Edit, usize), Fault> {
     let o = given.o;
     let value = parse(&o.value).map_err(|e| bad_value(given, &e))?;

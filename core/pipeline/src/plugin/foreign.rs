@@ -264,7 +264,8 @@ struct RunNames {
 
 impl RunNames {
     fn host(&self, call: &CallState) -> abi::Host {
-        // The plugin's thread is no thread of the pool, and would count wrongly.
+        // The plugin's thread is no thread of the pool, so it would report a wrong number of
+        // threads.
         abi::Host { threads: self.threads, ..call.host() }
     }
 }

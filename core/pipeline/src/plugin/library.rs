@@ -183,8 +183,8 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     }
 }
 
-/// Opens a library with all functions that it calls: one that is not there would end the program
-/// where it is called first.
+/// Opens a library and resolves all functions that it calls: a missing one would otherwise end the
+/// program at its first call.
 ///
 /// # Safety
 /// The library is trusted to obey the rules of the plugin ABI.

@@ -97,7 +97,7 @@ impl PipelineRun<'_> {
         }
     }
 
-    /// The result of an undone stage: what it was given of the kinds that it makes.
+    /// The result of an undone stage: its inputs of the kinds that it makes.
     ///
     /// Errors: those of bringing that into memory.
     pub(super) fn passed_on(&mut self, index: usize) -> Result<RanStage, RunError> {

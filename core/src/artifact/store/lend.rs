@@ -6,10 +6,10 @@ use std::any::Any;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
-/// Bytes shown where they lie, and who keeps them there.
+/// Bytes without a copy, and the owner of their memory.
 pub type KeptBytes = (ManuallyDrop<Vec<u8>>, Arc<dyn Any + Send + Sync>);
 
-/// Someone who can be asked to keep a list of bytes that was lent.
+/// An owner that can keep the memory of a lent list of bytes.
 pub trait Lend: std::fmt::Debug + Send + Sync {
     /// Keeps the bytes, the list that this owner was named for, for as long as the keeper lives;
     /// none where that cannot be. The vector must neither grow nor be freed.

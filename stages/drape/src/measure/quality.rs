@@ -20,7 +20,7 @@ use toile_core::prelude::*;
 /// Depth below which a vertex on the skin does not count as inside the body, metres.
 const SKIN_TOLERANCE: f64 = 1e-4;
 
-/// Measures the garment and holds it against its quality limits.
+/// Measures the garment and compares it with its quality limits.
 ///
 /// A pipeline gets this stage by itself; name it in the file to set other limits. A result that
 /// misses a limit is written all the same, with exit code 4: so does a garment that has slid off

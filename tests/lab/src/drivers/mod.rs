@@ -124,7 +124,7 @@ struct Run {
     dt: Option<f64>,
 }
 
-/// Runs all of it; `progress` hears of each run before it begins and may stop there.
+/// Runs everything; `progress` is called before each run and may stop there.
 #[must_use]
 pub fn drivers(options: &Options, progress: &mut Progress<'_>) -> Report {
     let runs = runs(&options.ways);

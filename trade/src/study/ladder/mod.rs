@@ -43,8 +43,8 @@ pub const CLOSE_ENOUGH: f64 = 0.25;
 pub const FINER: f64 = 1.3;
 /// Levels at most: 2^9 times the triangles.
 const MOST_LEVELS: usize = 10;
-/// Powers of the ratio among which levels are looked for: a single part of an edge takes two to
-/// become another number.
+/// Powers of the ratio that are tried for the next level: a count of one part needs two to become
+/// another number.
 const MOST_POWERS: i32 = 2 * MOST_LEVELS as i32;
 /// Said where a finer level there is not.
 const NO_FINER: &str = "no knob can be refined further";

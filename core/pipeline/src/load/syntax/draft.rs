@@ -90,7 +90,7 @@ fn nothing(card: &Card) -> Vec<Feed> {
     card.inputs.iter().map(|_| Feed::Nothing).collect()
 }
 
-/// The stages that could be made, of these drafts with these feeds.
+/// The stages that could be made from these drafts with these inputs.
 pub(crate) fn finished(drafts: Vec<Draft>, feeds: Vec<Vec<Feed>>) -> Finished {
     let mut all = Finished::default();
     // Where each draft stands among the nodes.

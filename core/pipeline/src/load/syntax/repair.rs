@@ -36,7 +36,7 @@ pub(crate) fn read(text: &str) -> (Option<ValueTree>, Vec<Fault>) {
     }
 }
 
-/// What was meant: that with which the parser comes farthest, beyond the fault.
+/// The most probable repair: the one with which the parser gets farthest beyond the fault.
 fn best(text: &str, repairs: &TextRepairs, fault: &SyntaxFault) -> Option<(Meant, TextRepairs)> {
     let mut best: Option<(usize, Meant, TextRepairs)> = None;
     for meant in &fault.meant {

@@ -160,9 +160,9 @@ impl Quadtree {
         }
     }
 
-    /// Which way the diagonal of a square of this lowest corner and side runs, so that diagonals
-    /// alternate like a chequer board; none for what is no cell. True from the lowest corner to the
-    /// highest.
+    /// The direction of the diagonal of the square with this lowest corner and side, so that
+    /// diagonals alternate like a chequer board: true from the lowest corner to the highest; none
+    /// where there is no such cell.
     pub(crate) fn rises(&self, corner: Point2, side: f64) -> Option<bool> {
         let level = (self.side.x / side).log2().round();
         if !(0.0..=MOST_CUTS as f64).contains(&level) {

@@ -28,7 +28,7 @@ pub(super) fn text(bytes: &[u8], told: &mut Remarks) -> String {
     }
     let (text, used, wrong) = named.unwrap_or(WINDOWS_1252).decode(bytes);
     match (&page, named, utf8) {
-        // What is no text of its code page, but UTF-8, is that.
+        // Text that is not valid in its code page, but is valid UTF-8, is read as UTF-8.
         (_, Some(_), Some(text)) if wrong => return text.to_owned(),
         (Some(page), Some(_), _) if wrong => told
             .warnings

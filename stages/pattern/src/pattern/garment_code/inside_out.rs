@@ -2,9 +2,9 @@
 //!
 //! A back that was copied from its front and moved behind the wearer, without turning it, looks at
 //! the wearer, and every stitch of it runs side by side with the edge that it is sewn to. Both
-//! together do not happen by themselves: in 55 files of GarmentCode and its forerunner no panel is
-//! one of these. Such a panel keeps its place and is turned over, and its stitches run with it.
-//! Cost: stitches times panels.
+//! together do not happen by chance: in 55 files of GarmentCode and its forerunner no panel is one
+//! of these. Such a panel keeps its place and is turned over, and its stitches run with it. Cost:
+//! stitches times panels.
 
 use super::panel::{Made, mirrored};
 use super::stitch::{Stitch, leaning, shortest};

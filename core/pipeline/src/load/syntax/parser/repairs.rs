@@ -40,7 +40,7 @@ pub(crate) enum Repair {
     Close(usize),
     /// What stands there is not there.
     Skip(Range<usize>),
-    /// What stands there closes the bracket at work.
+    /// The text there closes the bracket that is being read.
     Closer(Range<usize>),
     /// What stands there is one value.
     Value(Range<usize>),
