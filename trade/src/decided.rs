@@ -4,7 +4,7 @@ use crate::ablate::path_to;
 use crate::saving::{Evidence, Saving};
 use toile_pipeline::decide::StageDecision;
 
-/// A decision with the words that need more than itself.
+/// A decision with what it saves and how it is reversed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Told {
     /// The decision.

@@ -25,7 +25,7 @@ impl<'a> Streams<'a> {
         Streams { apart, out, err, lost: None, colour: Color::Auto.is_on(), quiet: false }
     }
 
-    /// Takes the manners that the user asks for.
+    /// Sets colour and quietness as the user asks.
     pub(crate) fn behave(&mut self, color: Color, quiet: bool) {
         (self.colour, self.quiet) = (color.is_on(), quiet);
     }

@@ -5,7 +5,7 @@
 //! the skin, and points deep inside get a bound to search within. The bounds are exact, never a
 //! guess.
 //!
-//! Cells are filled where points ask for them, each once; a body is mostly larger than what cloth
+//! Cells are filled where points need them, each once; a body is mostly larger than what cloth
 //! comes near. Cost: a closest-point query a cell that is requested; all [`CELLS`] of them, some 50
 //! ms for a body of 20,000 triangles, where they are filled ahead. Half a megabyte. Outside the
 //! lattice the distance to its box is the bound.

@@ -98,7 +98,8 @@ fn pairs<'a>(
     pairs
 }
 
-/// Depths, beyond some of the two sides each, at which a fourth side lies on ridges.
+/// Finds quadrilaterals whose fourth side lies on ridges: it is moved along the first two sides,
+/// from `from` to `to` pixels past `beyond`.
 fn fourth(
     ridges: &SlopeRidges,
     [first, second]: [&SegmentMeeting; 2],

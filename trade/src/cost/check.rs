@@ -48,7 +48,7 @@ pub struct StageVerdict {
     pub stage: String,
     /// True where no other pipeline has this stage, and others of its role stood in.
     pub stand_in: bool,
-    /// Prediction / fact of each run, ascending.
+    /// Predicted / measured of each run, ascending.
     pub ratios: Vec<f64>,
     /// The median of the measured values.
     pub fact: f64,

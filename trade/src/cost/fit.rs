@@ -8,7 +8,7 @@
 //! Heath, Wahba 1979). Non-negative factors keep a law rising, so that it can be used beyond the
 //! sizes that were measured. Cost: 2^terms small systems. Limit: five terms.
 
-/// One observation: the terms' values, the fact (greater than 0) and its weight.
+/// One observation: the terms' values, the measured value (greater than 0) and its weight.
 #[derive(Debug, Clone)]
 pub(super) struct Observation {
     pub(super) terms: Vec<f64>,
@@ -51,7 +51,7 @@ fn predicted(row: &Observation, columns: &[usize], factors: &[f64]) -> f64 {
     columns.iter().zip(factors).map(|(c, f)| row.terms[*c] * f).sum()
 }
 
-/// How far a prediction lies from the fact, as a logarithm.
+/// How far a prediction lies from the measured value, as a logarithm.
 fn error(row: &Observation, columns: &[usize], factors: &[f64]) -> f64 {
     (predicted(row, columns, factors) / row.fact).ln().abs().min(FARTHEST)
 }

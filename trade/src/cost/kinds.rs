@@ -17,7 +17,7 @@ const HALF: f64 = 0.6;
 pub(super) struct Kinds(BTreeMap<String, f64>);
 
 impl Kinds {
-    /// Learns from runs and their errors, ln(fact / prediction).
+    /// Learns from runs and their errors, ln(measured / predicted).
     pub(super) fn learn(seen: &[Seen<'_>], errors: &[f64]) -> Self {
         let mut runs: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
         for (s, error) in seen.iter().zip(errors) {

@@ -21,7 +21,7 @@ pub(crate) struct LastMade {
     pub(crate) sets: Vec<Option<Vec<String>>>,
 }
 
-/// The maker's name of a port that takes the run's own record.
+/// What feeds a port that takes the record of the run itself, in place of a stage's id.
 pub(crate) const RUN_SO_FAR: &str = "the run so far";
 
 /// One thing that differs, or that does not.

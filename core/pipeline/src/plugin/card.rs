@@ -129,7 +129,7 @@ fn by_kind(value: &str, doc: &ParamDoc) -> Result<(), ParamFault> {
     }
 }
 
-/// The fault of a value that a plugin refused without a word.
+/// The fault of a value that a plugin refused without a message.
 pub(super) fn out_of_range(value: &str, doc: &ParamDoc) -> Option<String> {
     value.parse().ok().and_then(|x| check_number(x, doc).err())
 }

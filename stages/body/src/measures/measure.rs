@@ -22,7 +22,7 @@ const LINES: i32 = 9;
 /// Hip, waist, bust, neck, arm and inseam, metres.
 pub(crate) type Six = [f64; 6];
 
-/// What a size asks for.
+/// The measures that a size requires.
 pub(crate) fn wanted(size: &FigureSize) -> Six {
     [size.hip, size.waist, size.bust, size.neck, size.arm, size.inseam]
 }

@@ -1,7 +1,7 @@
 //! The skin of a [`ScalarField`] as an even, closed triangle mesh: surface nets (Gibson, 1998) with
 //! one vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004),
-//! [refined](crate::skin::refine) where the field asks for shorter edges, with rounds of
-//! tangential smoothing, each followed by a Newton step back onto the skin.
+//! [refined](crate::skin::refine) where the field requires shorter edges, with rounds of tangential
+//! smoothing, each followed by a Newton step back onto the skin.
 //!
 //! The field is symmetric about x = 0: one half is meshed, with a column of cells astride the
 //! plane, and mirrored, so that the mesh is symmetric to the last bit and costs half.

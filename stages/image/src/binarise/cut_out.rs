@@ -53,7 +53,7 @@ pub(super) fn cut_out(photo: &Photo) -> Option<CutOut> {
     if differs <= SYMMETRIC * opaque { None } else { found(false) }
 }
 
-/// Area of the convex hull of the opaque pixels, squares of a pixel.
+/// Area of the convex hull of the opaque pixels, in pixels.
 fn hull_area(alpha: &GrayImage) -> f64 {
     let mut corners: Vec<[i64; 2]> = Vec::new();
     for (y, row) in (0..).zip(alpha.as_raw().chunks_exact(alpha.width().max(1) as usize)) {

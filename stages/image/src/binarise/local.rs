@@ -107,8 +107,8 @@ fn negative(mut grey: GrayImage) -> GrayImage {
     grey
 }
 
-/// Marks what is darker than its window (radius 1 to 2,000 px) asks for; past the frame the window
-/// ends.
+/// Marks what is darker than the threshold of its window (radius 1 to 2,000 px); the window ends at
+/// the frame.
 pub fn local(
     grey: &GrayImage,
     method: LocalMethod,

@@ -161,7 +161,7 @@ fn length(panels: &[Sized<'_>], tie: &[Side]) -> f64 {
     lengths.fold(0.0, f64::max)
 }
 
-/// Edge lengths at equal steps along a tie, metres: the least that any side asks for.
+/// Edge lengths at equal steps along a tie, metres: the least that any side requires.
 fn profile(panels: &[Sized<'_>], tie: &[Side]) -> Vec<f64> {
     let (mut least, fine) = (Vec::new(), panels[tie[0].panel].field.range().fine);
     let n = (length(panels, tie) * SAMPLES.0 / fine).clamp(4.0, SAMPLES.1).ceil() as usize;
