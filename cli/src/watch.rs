@@ -34,7 +34,7 @@ pub(crate) fn watch(
     }
     let cancel = interrupt::on_ctrl_c();
     let mut base = registry.clone();
-    // Plugins are built anew while their former selves are loaded.
+    // Plugins may be built again while their former versions are loaded.
     base.load_plugins_apart();
     loop {
         let started = Instant::now();

@@ -1,4 +1,4 @@
-//! What travels on the edges of a pipeline.
+//! The artifacts that stages pass to each other.
 //!
 //! Every artifact is immutable once made, carries SI units (metres, kilograms, seconds) and `f64`
 //! coordinates, and can be digested, measured and shown. One mechanism, the [`Artifact`] trait,

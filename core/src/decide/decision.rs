@@ -86,9 +86,9 @@ pub enum Turn {
 pub struct Decision {
     /// The rule, one word or a few with hyphens: `texture-size`.
     pub rule: String,
-    /// What became of what it speaks of.
+    /// What became of the part of the work that it is about.
     pub state: State,
-    /// What it speaks of, in words.
+    /// The part of the work that it is about, in words.
     pub what: String,
     /// The fact of the scene, in words, with its figures.
     pub fact: String,

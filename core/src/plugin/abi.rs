@@ -1,9 +1,9 @@
 //! The types that cross the plugin ABI, as C has them (`core/include/toile_plugin.h`).
 //!
 //! Rules, given in full in docs/reference/plugin-abi.md: nothing but these types and plain numbers
-//! crosses; fields are only ever added at the end of a structure, with a new minor version; whoever
-//! passes memory keeps it until the call that passed it returns; nobody frees what the other side
-//! made.
+//! crosses; fields are only ever added at the end of a structure, with a new minor version; the
+//! side that passes memory keeps it until the call that passed it returns; neither side frees what
+//! the other side made.
 
 use std::ffi::c_void;
 

@@ -1,4 +1,4 @@
-//! Where the program is inside a plugin: which one, for whoever must say so from outside.
+//! Records which plugin the program is inside, so that code outside of the call can name it.
 //!
 //! Two have to. A plugin that calls `exit` ends the program from within, and the system's exit code
 //! is that of the plugin: [`name_who_exits`] has the C library call back while a program ends, so

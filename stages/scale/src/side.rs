@@ -173,7 +173,7 @@ fn thin(peaks: &[Peak], every: usize) -> Vec<Peak> {
     keep
 }
 
-/// How much a peak speaks for a line.
+/// The weight of a peak as evidence for a line.
 fn voice(peak: &Peak, p: f64, q: f64, strong: f64) -> f64 {
     let off = (peak.u - (p + (q - p) * peak.t)).abs();
     (1.0 - off).max(0.0) * (peak.slope / strong).min(2.0)

@@ -1,9 +1,9 @@
 //! What a kind of garment adds to a law of sizes.
 //!
 //! A vest's outline is curved at neck and armholes where a T-shirt's runs straight: at the same
-//! sizes its mesh takes more mending. No size says so, but other garments of the kind do. Of each
-//! kind the middle of fact / prediction is kept, by pipelines and drawn towards 1 while these are
-//! few (the mean of a random effect: Robinson, That BLUP is a good thing, 1991).
+//! sizes its mesh takes more mending. No size says so, but other garments of the kind do. For each
+//! kind the median of measured / predicted is kept, by pipelines and shrunk towards 1 while these
+//! are few (the mean of a random effect: Robinson, That BLUP is a good thing, 1991).
 
 use super::seen::{Seen, median};
 use std::collections::BTreeMap;

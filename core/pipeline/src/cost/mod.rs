@@ -1,5 +1,5 @@
-//! What a run will take, before it runs: sizes that travel along a pipeline's edges, and what
-//! stages took.
+//! Estimates before a run: the sizes of artifacts along a pipeline's edges, and what stages took in
+//! earlier runs.
 //!
 //! Before a run, [`foresee`] walks the pipeline and estimates for every stage the sizes of its
 //! inputs and outputs. During a run a [`Meter`] measures what each stage takes. The laws of time

@@ -154,7 +154,7 @@ fn bad_value(given: Given<'_>, e: &Fault) -> Fault {
     given.fault(&message, from..from + o.value.len()).hint(hint)
 }
 
-/// One override on its way down the tree.
+/// One override, while its path is followed down the tree.
 struct OverrideWalk<'a> {
     text: &'a str,
     registry: &'a Registry,

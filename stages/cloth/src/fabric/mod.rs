@@ -43,7 +43,7 @@ pub struct Fabric {
     pub thickness: f64,
     /// Coulomb friction of cloth on cloth and body.
     pub friction: f64,
-    /// Rate at which strain waves die, as stiffness-proportional damping time, s.
+    /// Damping of strain waves, as stiffness-proportional damping time, s.
     pub damping: f64,
 }
 

@@ -4,9 +4,9 @@
 //! Fact: every step's solution is compared with its matrix in double precision, and refined; where
 //! more than a ten-thousandth of the right side is left, the matrix is too ill conditioned, and is
 //! factored anew in double precision. Forces, energies and the proof of rest are of double
-//! precision always. Tolerance: the state keeps the same speed of rest; which of its neighbours a
-//! hair picks may differ, as between starts that are moved by a millimetre. Source: Wilkinson 1963,
-//! Carson and Higham 2018.
+//! precision always. Tolerance: the state meets the same limit of speed; which of several
+//! neighbouring states is found may differ, as between starts that are moved by a millimetre.
+//! Source: Wilkinson 1963, Carson and Higham 2018.
 
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};

@@ -34,7 +34,7 @@ const HOLLOW: f64 = 0.1;
 const BULGE: f64 = 0.2;
 /// An edge whose angle to the grain has a greater sine than this is no seam in the middle either.
 const LEVEL: f64 = 0.5;
-/// What speaks for an edge of a band that goes on where a seam of the band ends.
+/// Confidence added for an edge of a band that continues where a seam of the band ends.
 const GOES_ON: f64 = 0.02;
 /// Edges and chains of a garment that are compared; with more nothing is proposed.
 const MOST: usize = 2_000;
@@ -72,7 +72,7 @@ struct Candidate {
     notches: Vec<f64>,
 }
 
-/// Seams, the surest first, each with its confidence and what speaks for it.
+/// Seams, the surest first, each with its confidence and the reasons for it.
 pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
     let mut all: Vec<Candidate> = Vec::new();
     for (i, p) in pieces.iter().enumerate() {

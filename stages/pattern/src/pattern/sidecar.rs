@@ -147,7 +147,7 @@ fn list<'n>(names: impl Iterator<Item = &'n String>) -> String {
     all[..all.len().min(MOST_NAMES)].join(", ") + &more
 }
 
-/// Seams as such a file, each with what speaks for it as a comment.
+/// Seams as such a file, each with the reasons for it as a comment.
 pub(super) fn write(seams: &[(PatternSeam, String)]) -> String {
     let mut out = String::from(
         "// Proposed seams. Look at each, take out what is wrong, and give this file as `seams`; nothing is sewn until then.\n\

@@ -144,7 +144,7 @@ impl Fold {
         (out.len() >= 2).then_some(Unfolded { sides: out, open })
     }
 
-    /// Moves sides that lie on the line a hair's breadth away from it, to where the others lie.
+    /// Moves sides that lie on the line slightly away from it, to the side of the others.
     fn gape(&self, sides: &mut [Side], slits: &[usize]) {
         let n = sides.len();
         let across = Vector2::new(-self.way.y, self.way.x);

@@ -1,5 +1,5 @@
-//! Backslashes in texts: `"C:\Users\me\tee.jpg"` is a path of Windows to whoever writes it, and
-//! holds escapes to RON.
+//! Backslashes in texts: `"C:\Users\me\tee.jpg"` is meant as a path of Windows, but to RON it
+//! contains escapes.
 //!
 //! `\U` and `\P` are no escapes at all, which the parser refuses; `\t` and `\n` are, and would put
 //! a tab into a path. No text of a pipeline needs a control character, so these are refused as

@@ -114,8 +114,8 @@ impl SizeField {
         Point2::new(self.low.x + i as f64 * self.cell, self.low.y + j as f64 * self.cell)
     }
 
-    /// The raster for whoever asks which of its nodes lie inside an outline: origin, distance and
-    /// counts of nodes.
+    /// The raster, for callers that find which of its nodes lie inside an outline: origin, distance
+    /// and counts of nodes.
     pub(crate) fn raster(&self) -> (Point2, f64, usize, usize) {
         (self.low, self.cell, self.columns, self.rows)
     }

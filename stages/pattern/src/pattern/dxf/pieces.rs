@@ -85,7 +85,7 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// A line in metres, without what is shorter than a hair is wide.
+    /// A line in metres, without segments that are too short.
     fn scaled(&self, stroke: &Stroke) -> Side {
         let to = |p: Point2| p * self.unit;
         let mut side = Side { name: String::new(), start: to(stroke.start), parts: Vec::new() };

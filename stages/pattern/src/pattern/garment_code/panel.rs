@@ -1,10 +1,10 @@
 //! A panel of the file as a piece of the pattern.
 //!
-//! Method: the edges are put in a loop by their vertices; a gap of a hair is closed; the loop
-//! becomes metres. A loop that runs clockwise is seen from inside the wearer: its x is mirrored and
-//! its pose accordingly, so that every piece is seen from outside. Rotation and translation are
-//! `Rz Ry Rx (x, y, 0) + translation`. Limits: edges must stand in the file in the order of the
-//! loop; some may run against it.
+//! Method: the edges are put in a loop by their vertices; a tiny gap is closed; the loop becomes
+//! metres. A loop that runs clockwise is seen from inside the wearer: its x is mirrored and its
+//! pose accordingly, so that every piece is seen from outside. Rotation and translation are `Rz Ry
+//! Rx (x, y, 0) + translation`. Limits: edges must stand in the file in the order of the loop; some
+//! may run against it.
 
 use super::damage::Damage;
 use super::read::{RawCurve, RawEdge, RawPanel};
