@@ -125,7 +125,8 @@ pub fn cover(body: SceneBody, cells: u32, turn: f64) -> Scene {
     scene
 }
 
-/// `layers` square sheets of half the size over each other, 4 mm apart, above the ball of [`drape`].
+/// `layers` square sheets of half the size over each other, 4 mm apart, above the ball of
+/// [`drape`].
 #[must_use]
 pub fn stack(layers: usize, cells: u32) -> Scene {
     let mut scene = drape(cells);
