@@ -1,4 +1,4 @@
-//! Tells the program which commit it was built from; a source tree without git gives the version
+//! Gives the program the commit that it was built from; a source tree without git gives the version
 //! alone.
 
 // What it prints is for cargo.
@@ -16,7 +16,7 @@ fn main() {
 
 /// The commit of this source tree; none where it is not a git tree of its own, or there is no git.
 fn commit() -> Option<String> {
-    // A copy of the sources within another project's tree is not that project's commit.
+    // Sources copied into another project's repository do not have that repository's commit.
     git(&["ls-files", "--error-unmatch", "build.rs"])?;
     let head = git(&["rev-parse", "--git-path", "HEAD"])?;
     let branch = git(&["symbolic-ref", "--quiet", "HEAD"]);

@@ -53,7 +53,8 @@ impl Contracts {
         }
     }
 
-    /// Takes note of what was found; only of a plugin, whose file tells one build from another.
+    /// Records whether a contract was kept; of plugins only, because the digest of their file
+    /// identifies the build.
     pub(crate) fn note(&mut self, card: &Card, contract: Contract, kept: bool) {
         self.found.extend(key(card, contract).map(|key| (key, kept)));
     }

@@ -47,7 +47,7 @@ enum ContractFinding {
     Kept(usize),
     /// It was broken.
     Broken(String),
-    /// The suite cannot tell.
+    /// No case of the suite could test it.
     Untried,
 }
 
@@ -64,7 +64,7 @@ impl ContractFinding {
         match self {
             ContractFinding::Kept(cases) => format!("{cases} cases answered"),
             ContractFinding::Broken(why) => why.clone(),
-            ContractFinding::Untried => "the suite cannot tell for what it takes and gives".into(),
+            ContractFinding::Untried => "the suite cannot test it for its kinds of input and output".into(),
         }
     }
 }

@@ -127,8 +127,8 @@ pub(crate) fn accept(args: &AcceptArgs, registry: &Registry, streams: &mut Strea
     })
 }
 
-/// The record and the sheet of two equal runs, or why there is none that a later run could be held
-/// against.
+/// The record and the sheet of two equal runs, or why there is none that a later run could be
+/// compared with.
 fn twice(
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,

@@ -72,9 +72,9 @@ where
     started(registry, arguments, Streams::new(None, out, err), false)
 }
 
-/// As [`command_with`], for a program whose `main` does nothing else: it starts itself for each run
-/// that it measures, so that memory is the run's own, and a run that the system ends is one lost
-/// setting. A signal that asks it to end and a plugin that ends it are told.
+/// As [`command_with`], for a program whose `main` does nothing else: each measured run is a
+/// process of its own, so that its memory is measured alone, and a run that the system kills costs
+/// one setting only. If a signal or a plugin ends the program, it prints which.
 pub fn program<A, T>(registry: &Registry, arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
 where
     A: IntoIterator<Item = T>,
@@ -85,7 +85,7 @@ where
     started(registry, arguments, Streams::new(Apart::this_program(Vec::new()), out, err), true)
 }
 
-/// Runs the command; a panic in it is told as a bug.
+/// Runs the command; a panic in it is reported as a bug.
 fn started<A, T>(registry: &Registry, arguments: A, mut streams: Streams<'_>, is_program: bool) -> u8
 where
     A: IntoIterator<Item = T>,

@@ -46,7 +46,7 @@ const BUILT_FROM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../core");
 /// The longest name: it becomes a folder's and a crate's.
 const MAX_NAME: usize = 48;
 
-/// What is asked for.
+/// What is requested.
 #[derive(Debug)]
 pub(crate) struct AskedStage<'a> {
     pub(crate) name: &'a str,
@@ -218,7 +218,7 @@ const RESERVED: [&str; 64] = [
     "examples",
 ];
 
-/// The stage's name: `FineMesher`, also where `fine_mesher` or `fine-mesher` is asked for.
+/// The stage's name: `FineMesher`, also where `fine_mesher` or `fine-mesher` is requested.
 fn stage_name(asked: &str, registry: &Registry) -> Result<String, Refusal> {
     let refused =
         || usage(format!("\"{asked}\" cannot name a stage; write a name like FineMesher or fine_mesher"));
@@ -258,7 +258,7 @@ fn check_own_names(name: &str, source: &str) -> Result<(), Refusal> {
     }
 }
 
-/// The line that names toile-core by its folder: the one that is asked for, else that of the source
+/// The line that names toile-core by its folder: the one that is requested, else that of the source
 /// tree.
 fn core_dependency(asked: Option<&Path>, built_from: &Path) -> Result<String, Refusal> {
     let path = asked.unwrap_or(built_from);

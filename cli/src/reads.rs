@@ -19,7 +19,7 @@ pub(crate) fn note(reads: &Reads, path: &Path) {
     reads.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned(), content);
 }
 
-/// What tells one content of a file from another; none of a file that is not there.
+/// Modification time, size and digest of a file; the digest is none where the file does not exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FileLook {
     modified: Option<SystemTime>,

@@ -86,7 +86,7 @@ pub(crate) fn once(
     }
 }
 
-/// Writes what a run that failed has made until then below its own folder, where nobody takes it
+/// Writes what a failed run has made until then into a folder of its own, so that it is not taken
 /// for a result.
 fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
     let files = std::mem::take(&mut *so_far.lock().unwrap_or_else(PoisonError::into_inner));
@@ -109,17 +109,16 @@ fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
 /// The folder of a run that failed, within its output folder.
 const FAILED: &str = "failed";
 
-/// Takes away what an earlier run that failed has left in its folder; a folder that is not such a
-/// run's stays.
+/// Removes what an earlier failed run has left in its folder; any other folder stays.
 fn clear(dir: &Path) {
     if dir.join("reason.txt").is_file() {
-        // What cannot be taken away lies beside the new files.
+        // What cannot be removed stays beside the new files.
         let _ = std::fs::remove_dir_all(dir);
     }
 }
 
-/// Says of the quality that is asked for if its claim was not measured for the pipeline as it is;
-/// so do metrics and report, but where they say already that `--set` changed it.
+/// Warns if the requested quality's error was not measured for the pipeline as it is. The metrics
+/// and the report say the same, unless they already say that `--set` changed the quality.
 fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>) {
     let asked = args.overrides.quality.as_deref();
     let quality = pipeline.qualities.iter().find(|q| Some(q.name.as_str()) == asked);
@@ -134,7 +133,7 @@ fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>
     }
 }
 
-/// Runs with a progress line; tells the notes and warnings of the stages, then the warnings of the
+/// Runs with a progress line; prints the notes and warnings of the stages, then the warnings of the
 /// cache.
 fn under_a_bar(
     pipeline: &Pipeline,

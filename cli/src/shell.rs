@@ -1,5 +1,5 @@
-//! `toile completions SHELL` and `toile man`: what a shell and the manual know of the arguments,
-//! made from the arguments.
+//! `toile completions SHELL` and `toile man`: shell completions and a manual page, made from the
+//! definitions of the arguments.
 
 use crate::args::Arguments;
 use crate::{Streams, exit};

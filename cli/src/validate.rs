@@ -33,7 +33,7 @@ pub(crate) fn inspect(pipeline: &Pipeline, options: &RunOptions) -> Result<(), R
 
 /// Why a pipeline is not run.
 pub(crate) enum RefusedPipeline {
-    /// What is asked of it cannot be.
+    /// The options ask for something that the pipeline does not have, such as a stage.
     Run(RunError),
     /// What its stages find wrong.
     File(Box<Faults>),
@@ -50,13 +50,13 @@ pub(crate) fn checked(
     Ok(pipeline)
 }
 
-/// Shows what is likely a slip in a pipeline that is none the less valid.
+/// Shows warnings about a valid pipeline.
 fn warn(warnings: &Faults, streams: &mut Streams<'_>) {
     warnings.lines().iter().for_each(|line| streams.warn(line));
 }
 
-/// Shows what is likely a slip of the user's: all but that a pipeline writes no garment, which a
-/// run may be for, and, of a run of a part, what only the rest would use.
+/// Shows warnings before a run. It leaves out that a pipeline writes no garment, which may be
+/// intended, and, in a run of a part, results that only the rest would use.
 pub(crate) fn warn_before_run(
     pipeline: &Pipeline,
     registry: &Registry,

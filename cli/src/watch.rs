@@ -34,7 +34,7 @@ pub(crate) fn watch(
     }
     let cancel = interrupt::on_ctrl_c();
     let mut base = registry.clone();
-    // Plugins are built anew while their former selves are loaded.
+    // Plugins may be built again while their former versions are loaded.
     base.load_plugins_apart();
     loop {
         let started = Instant::now();
@@ -72,11 +72,11 @@ fn note_named(reads: &Reads, pipeline: &Path, plugins: &[PathBuf]) {
     asked.chain(plugins.iter().cloned()).flat_map(|p| plugin_files(&p)).for_each(|p| note(reads, &p));
 }
 
-/// How files are now; none of one that is not there.
+/// The state of each file now; none for a file that does not exist.
 type Looks = BTreeMap<PathBuf, Option<FileLook>>;
 
-/// Waits until the content of a file is another than the one that was used, and then stays; none
-/// once `stopped`.
+/// Waits until the content of a file differs from the one that was used and no longer changes.
+/// Returns the changed files; none once `stopped`.
 fn wait(used: &BTreeMap<PathBuf, Option<Digest>>, stopped: impl Fn() -> bool) -> Option<Vec<PathBuf>> {
     let mut last: Looks = used.keys().map(|path| (path.clone(), look(path, None))).collect();
     while !stopped() {
@@ -91,7 +91,7 @@ fn wait(used: &BTreeMap<PathBuf, Option<Digest>>, stopped: impl Fn() -> bool) ->
     None
 }
 
-/// The files whose content is another than the one that was used.
+/// The files whose content differs from the one that was used.
 fn changed(used: &BTreeMap<PathBuf, Option<Digest>>, now: &Looks) -> Vec<PathBuf> {
     let content = |path: &PathBuf| now.get(path).and_then(|look| look.as_ref()?.content);
     used.iter().filter(|(path, was)| content(path) != **was).map(|(path, _)| path.clone()).collect()

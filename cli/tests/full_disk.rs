@@ -1,5 +1,5 @@
-//! A cache that runs out of room is a warning, through the process: its files may not grow beyond a
-//! limit of the shell, as on a disk that is full.
+//! A cache that runs out of space gives a warning, seen through the process: its files may not grow
+//! beyond a limit of the shell, as on a disk that is full.
 
 use std::path::Path;
 use std::process::Command;
@@ -30,7 +30,7 @@ fn a_full_disk_is_one_warning_and_the_run_goes_on() {
         "{err}"
     );
     assert!(dir.path().join("out/stages/Otsu/front.png").exists());
-    // With room again the same cache serves as if nothing had been.
+    // With space again the same cache works as before.
     assert_eq!(run(""), (Some(0), String::new()));
     assert_eq!(run(""), (Some(0), String::new()));
 }

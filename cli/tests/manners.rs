@@ -80,7 +80,7 @@ fn more_threads_than_cores_are_bounded_and_that_is_told() {
     let cores = std::thread::available_parallelism().unwrap().get();
     let has = if cores == 1 { "1 core".to_owned() } else { format!("{cores} cores") };
     let told =
-        format!("warning: 1024 threads are asked for and this machine has {has}; it works on {cores}\n");
+        format!("warning: 1024 threads are requested and this machine has {has}; it works on {cores}\n");
     assert_eq!((code, err), (Some(0), told));
     let metrics = fs::read_to_string(dir.path().join("out/sheet/metrics.json")).unwrap();
     assert!(metrics.contains(&format!("\"threads\": {cores}")), "{metrics}");
@@ -122,7 +122,7 @@ fn colour_is_for_terminals_unless_it_is_asked_for() {
     assert!(!coloured(&[], false) && !coloured(&["--color", "auto"], false));
     assert!(!coloured(&["--color", "never"], false));
     assert!(coloured(&["--color", "always"], false));
-    // What is asked for by name goes before what holds everywhere.
+    // What is requested by name goes before what holds everywhere.
     assert!(coloured(&["--color", "always"], true));
 }
 
@@ -238,7 +238,7 @@ fn a_pipeline_comes_from_standard_input() {
     }
 }
 
-/// A pipe that nobody writes to, and a link to a device that never ends.
+/// A pipe without a writer, and a link to a device without an end.
 fn traps(dir: &Path) -> [PathBuf; 2] {
     let [pipe, device] = ["pipe", "device"].map(|name| dir.join(name));
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());

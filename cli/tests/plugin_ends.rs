@@ -165,7 +165,7 @@ fn under_nohup_a_run_goes_on_when_its_terminal_closes() {
     let kill = |signal: &str| Command::new("kill").arg(signal).arg(child.id().to_string()).status().unwrap();
     assert!(kill("-HUP").success());
     std::thread::sleep(Duration::from_secs(4));
-    // Whoever is gone cannot be signalled, and whoever has ended is waited for.
+    // A process that is gone cannot be signalled, and a process that has ended is waited for.
     assert!(kill("-TERM").success());
     let status = child.wait().unwrap();
     assert_eq!(status.code(), Some(5));

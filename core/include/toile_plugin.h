@@ -1,4 +1,4 @@
-/* The border between Toile and its plugins: C form of core/src/plugin/abi.rs.
+/* The ABI between Toile and its plugins: C form of core/src/plugin/abi.rs.
  *
  * docs/reference/plugin-abi.md is the specification. In short: fields are only added at the end of a structure, with a new
  * minor version; who passes memory keeps it until the call returns; nobody frees what the other side made.
@@ -23,8 +23,8 @@ extern "C" {
 
 /* What a call gives back. */
 #define TOILE_OK 0
-#define TOILE_FAILED 1   /* told why through host->fail */
-#define TOILE_PANICKED 2 /* the same, of an exception or panic that ended at the border */
+#define TOILE_FAILED 1   /* gave the reason through host->fail */
+#define TOILE_PANICKED 2 /* the same, of an exception or panic that ended at the ABI */
 
 /* UTF-8, not ended by a zero; ptr may be null where len is 0. */
 typedef struct toile_text {
@@ -82,7 +82,7 @@ typedef struct toile_port {
 #define TOILE_PARAM_TRADES 1 /* trades accuracy for time */
 #define TOILE_PARAM_FINER_LESS 2 /* a resolution, less is finer: an edge length, a time step */
 #define TOILE_PARAM_FINER_MORE 4 /* a resolution, more is finer: a count of iterations */
-#define TOILE_PARAM_WAY 8 /* other work with another value than the default: its cost is told apart */
+#define TOILE_PARAM_WAY 8 /* different work if the value is not the default: its cost is recorded separately */
 
 typedef struct toile_param {
     toile_text name;

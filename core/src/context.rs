@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Clone, Default)]
 pub struct Cancel {
     flag: Arc<AtomicBool>,
-    /// Asked as well, where the flag lies on the other side of a plugin's border.
+    /// A second flag that is checked as well: that of the program, in a plugin.
     also: Option<Arc<dyn Fn() -> bool + Send + Sync>>,
 }
 
@@ -43,17 +43,17 @@ impl Cancel {
     }
 }
 
-/// What a stage tells while it works.
+/// What a stage reports while it works.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
-    /// How far the stage has come, 0 to 1, and what it is at.
+    /// How far the stage has come, 0 to 1, and what it is doing.
     Progress {
         /// Share done.
         share: f64,
-        /// What it is at: `seam gap 3.2 mm, energy 0.41 J`.
+        /// What it is doing: `seam gap 3.2 mm, energy 0.41 J`.
         text: String,
     },
-    /// What was decided, for a user who wants to know.
+    /// A decision and the fact behind it.
     Note(String),
     /// Something that the user should look at.
     Warning(String),
@@ -232,21 +232,22 @@ impl Context {
         &self.cancel
     }
 
-    /// Tells how far the stage has come.
+    /// Reports how far the stage has come: the share done, 0 to 1, and what it is doing.
     pub fn progress(&self, share: f64, text: impl Into<String>) {
         let event = Event::Progress { share: share.clamp(0.0, 1.0), text: text.into() };
         self.listener.event(&self.stage, &self.entry, &event);
     }
 
-    /// Tells what was decided, and by what fact: "the front is taken for a T-shirt". It stands in
-    /// the report, and in the terminal where the user asks for more.
+    /// Reports a decision and the fact behind it: "the front is taken for a T-shirt". The note is
+    /// in the report, and in the terminal with `--verbose`.
     pub fn note(&self, text: impl Into<String>) {
         let text = text.into();
         self.listener.event(&self.stage, &self.entry, &Event::Note(text.clone()));
         self.remarks().notes.push(text);
     }
 
-    /// Tells what the user should look at. It stands in the terminal and in the report.
+    /// Warns of something that the user should look at. The warning is in the terminal and in the
+    /// report.
     pub fn warn(&self, text: impl Into<String>) {
         let text = text.into();
         self.listener.event(&self.stage, &self.entry, &Event::Warning(text.clone()));
@@ -296,7 +297,7 @@ impl Context {
         content
     }
 
-    /// Looks whether a file named by the pipeline is there to be read, without reading it.
+    /// Checks that a file named by the pipeline can be read, without reading it.
     ///
     /// Errors: those of [`Context::read`].
     pub fn look(&self, path: &str) -> Result<(), StageError> {
@@ -309,8 +310,7 @@ impl Context {
         there
     }
 
-    /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else
-    /// did.
+    /// Records a file that was read elsewhere; its content is hashed here if no digest is given.
     pub fn note_read(&self, path: &str, digest: Option<Digest>) {
         let digest = digest.or_else(|| digest_of(&crate::read_file(&self.resolve(path)).ok()?));
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), digest));

@@ -105,8 +105,8 @@ pub struct StageError {
     pub message: String,
     /// What the user may do about it.
     pub hint: Option<String>,
-    /// What lies behind it, for who asks: forces, counts, places in metres. Told with `--verbose`,
-    /// in `reason.txt` and in the report.
+    /// Details behind the message: forces, counts, places in metres. Shown with `--verbose`, in
+    /// `reason.txt` and in the report.
     pub detail: Option<String>,
     /// The parameter at fault, so that the runner can point at it.
     pub param: Option<&'static str>,
@@ -145,7 +145,7 @@ impl StageError {
         self
     }
 
-    /// Adds what lies behind it, for who asks.
+    /// Adds what lies behind it, for those who need them.
     pub fn detail(mut self, detail: impl Into<String>) -> Self {
         self.detail = Some(detail.into());
         self

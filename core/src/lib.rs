@@ -2,8 +2,8 @@
 //!
 //! A *pipeline* is a RON file that wires *stages*; a stage reads *artifacts* and makes new ones.
 //! This crate knows no stage by name and does no physics: it holds the artifacts' types, the
-//! [`Stage`] trait, parameters and their checks, the registry, and the border of plugins. Pipelines
-//! are loaded and run by `toile-pipeline`, which the author of a stage does not need.
+//! [`Stage`] trait, parameters and their checks, the registry, and the plugin ABI. Pipelines are
+//! loaded and run by `toile-pipeline`, which the author of a stage does not need.
 //!
 //! A stage is a parameter struct and one typed function:
 //!

@@ -28,7 +28,7 @@ pub enum Change {
         /// The new value from the old one, both as RON; none where the value is no such thing.
         convert: fn(&str) -> Option<String>,
     },
-    /// A parameter is no more.
+    /// A parameter was removed.
     Removed {
         /// Its name.
         param: &'static str,
@@ -63,7 +63,7 @@ impl Migration {
         Migration { stage, change: Change::Param { from, to, convert } }
     }
 
-    /// The parameter is no more; `why` says what does its work now.
+    /// The parameter was removed; `why` says what does its work now.
     pub const fn removed(stage: &'static str, param: &'static str, why: &'static str) -> Self {
         Migration { stage, change: Change::Removed { param, why } }
     }

@@ -1,8 +1,8 @@
 //! Panics as words.
 //!
-//! A panic is a bug of the program or of a stage, never of its input. It ends the work at hand with
-//! an error that says what was said and where in the source, and what to do about it; the program
-//! goes on to say so and to clean up.
+//! A panic is a bug of the program or of a stage, never of its input. It ends the present work with
+//! an error that has the panic's message, its place in the source and what to do; the program
+//! continues, so that it can report this and clean up.
 
 use std::any::Any;
 use std::collections::VecDeque;
@@ -47,7 +47,7 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
 /// What a panic says, and where it was where that is remembered.
 pub fn words(payload: Box<dyn Any + Send>) -> String {
     let text = said(payload.as_ref()).unwrap_or_default();
-    // Dropping a payload may panic again, and then nothing could be told at all.
+    // Dropping a payload may panic again, and then nothing could be reported.
     std::mem::forget(payload);
     let places = PLACES.lock().unwrap_or_else(PoisonError::into_inner);
     match places.iter().find(|(what, _)| *what == text) {

@@ -1,11 +1,11 @@
-//! What a stage tells the user beside its result.
+//! Notes and warnings that a stage gives the user beside its result.
 
 use serde::{Deserialize, Serialize};
 
 /// Remarks of one stage, in two levels; the third, an error, ends the run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Remarks {
-    /// What was decided, and by what fact.
+    /// Decisions, each with the fact behind it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
     /// What the user should look at.

@@ -18,15 +18,16 @@ pub struct StageRecord {
     pub params: String,
     /// Wall time, seconds.
     pub wall_s: f64,
-    /// What it made; of a run that a stage reports on, without services such as a collider.
+    /// What it made. In the log that a reporting stage reads, services such as a collider are left
+    /// out.
     pub outputs: Vec<PortValue>,
     /// Figures that the stage gave through its context.
     pub figures: Vec<Measure>,
-    /// What the stage told through its context.
+    /// Notes and warnings that the stage gave through its context.
     pub remarks: Remarks,
-    /// What its own work took, where it ran whole and somebody measured.
+    /// What its own work took; none where it did not run to its end or nothing measured it.
     pub used: Option<Used>,
-    /// What it was expected to take, where that was asked.
+    /// What it was expected to take; none where no prediction was requested.
     pub predicted: Option<Predicted>,
 }
 
@@ -35,7 +36,7 @@ pub struct StageRecord {
 pub struct RunLog {
     /// The pipeline's name.
     pub pipeline: String,
-    /// The named quality that it was run at, for people; none where nobody asked for one.
+    /// The named quality that it was run at, for people; none where none was requested.
     pub quality: Option<String>,
     /// Stages in the order in which they ran.
     pub stages: Vec<StageRecord>,
@@ -54,7 +55,7 @@ pub struct Failure {
     pub message: String,
     /// What the user may do about it.
     pub hint: Option<String>,
-    /// What lies behind it, for who asks.
+    /// What lies behind it, for those who need them.
     pub detail: Option<String>,
 }
 

@@ -1,5 +1,5 @@
-//! Lengths of the edges of pattern files, one a line: file, piece, edge, metres, separated by tabs;
-//! to hold them against another program's.
+//! Lengths of the edges of pattern files, one per line: file, piece, edge, metres, separated by
+//! tabs; to hold them against another program's.
 //!
 //!     cargo run --release --example edge_lengths -- shirt_specification.json ...
 #![allow(clippy::print_stdout)]

@@ -1,4 +1,4 @@
-//! Carries real photos to named outlines and draws them.
+//! Makes named outlines from real photos and draws them.
 //!
 //!     TOILE_SHARED=... cargo run --release -p toile-stages --example name_edges [OUT_DIR] [NAME]...
 //!

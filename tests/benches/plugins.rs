@@ -1,4 +1,4 @@
-//! What the border of a plugin costs: the same stage, linked in and loaded.
+//! What the plugin ABI costs: the same stage, linked in and loaded.
 //!
 //!     cargo bench -p toile-tests --bench plugins
 #![allow(clippy::unwrap_used, missing_docs)]
@@ -19,7 +19,7 @@ fn registries(name: &str, register: fn(&mut Registry)) -> [(&'static str, Regist
     [("linked", linked), ("loaded", loaded)]
 }
 
-/// A photo of 12 megapixels through a stage that passes it on: nothing but the border.
+/// A photo of 12 megapixels through a stage that passes it on: nothing but the plugin ABI.
 fn picture(c: &mut Criterion) {
     let mut group = c.benchmark_group("photo of 12 megapixels");
     group.sample_size(20);

@@ -1,4 +1,4 @@
-//! How far apart a garment comes to rest from starts that were moved by a hair.
+//! How far apart a garment comes to rest from starts that were moved by a tiny amount.
 //!
 //!     cargo run --release -p toile-tests --example spread -- pipelines/vest.ron StaticEquilibrium 4 0.001,0.1,1 [KEY=VALUE ...]
 //!

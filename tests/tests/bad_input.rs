@@ -127,7 +127,7 @@ fn two_garments() {
     let dir = tempfile::tempdir().unwrap();
     let two = |x: u32, y: u32| (200..600).contains(&y) && ((60..300).contains(&x) || (400..640).contains(&x));
     let path = picture(dir.path(), "two.png", two);
-    // One of them is taken, which is told, and is no vest.
+    // One of them is taken, with a warning, and is no vest.
     let answer = refused(&with_front(&path));
     assert_says(&answer, "a second thing lies in");
     assert_says(&answer, "does not look like a vest");

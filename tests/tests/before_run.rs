@@ -96,7 +96,7 @@ fn photos_that_the_style_does_not_take_are_told_by_name() {
     assert!(text.contains("help: did you mean \"front\"?"), "{text}");
     let (code, text) = said(&[("\"back\":", "\"lining\":")]);
     assert_eq!(code, 0, "{text}");
-    assert!(text.contains("Photos: `Outline` makes nothing of the photo \"lining\""), "{text}");
+    assert!(text.contains("Photos: `Outline` does not use the photo \"lining\""), "{text}");
     assert!(text.contains("the photo \"front\" has no other side, and its piece stays unsewn"), "{text}");
     assert!(text.contains("or write `\"back\": MirrorOf(\"front\")`"), "{text}");
     let (code, text) = said(&[]);
@@ -114,7 +114,7 @@ fn photos_that_the_style_does_not_take_are_told_by_name() {
         words(&answer)
     };
     assert!(said("Front").contains("`Block` takes no photo named \"Front\" "), "{}", said("Front"));
-    let none = "`Block` cuts the garment from \"front\", and no photo is named so";
+    let none = "`Block` cuts the garment from \"front\", and no photo has that name";
     assert!(said("vorne").contains(none), "{}", said("vorne"));
 }
 

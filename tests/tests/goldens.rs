@@ -5,8 +5,8 @@ use std::path::Path;
 use toile_pipeline::golden::{compare, parse};
 use toile_tests::{Answer, napkin, pipeline, root, toile};
 
-/// Of the photos' pipelines, those that take longest: the others go the same way. `.ci/wide` checks
-/// them.
+/// The pipelines from photos that take longest: other pipelines cover the same stages. `.ci/wide`
+/// checks these.
 const SLOW: [&str; 4] = ["tshirt.ron", "photo.ron", "photo_tee.ron", "photo_vest.ron"];
 
 fn agree(slow: bool) {

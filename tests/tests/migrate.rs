@@ -139,7 +139,7 @@ fn what_validate_refuses_is_not_called_up_to_date() {
         }
         assert_eq!(toile(&["validate", &name]).code, 3);
     }
-    // An old file with such a fault is rewritten, and the fault is told.
+    // An old file with such a fault is rewritten, and the fault is reported.
     fs::write(&file, OLD.replace("Otsu()", "Otzu()")).unwrap();
     let answer = toile(&["migrate", &name]);
     assert_eq!(answer.code, 3);

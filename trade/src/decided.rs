@@ -4,18 +4,18 @@ use crate::ablate::path_to;
 use crate::saving::{Evidence, Saving};
 use toile_pipeline::decide::StageDecision;
 
-/// A decision with the words that need more than itself.
+/// A decision with what it saves and how it is reversed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Told {
     /// The decision.
     pub decided: StageDecision,
     /// What it saves.
     pub saving: Saving,
-    /// How it is turned round.
+    /// How it is reversed.
     pub turned: String,
 }
 
-/// Adds to decisions what they save and how they are turned round.
+/// Adds to decisions what they save and how they are reversed.
 pub fn told(evidence: &Evidence<'_>, decided: Vec<StageDecision>) -> Vec<Told> {
     let one = |decided: StageDecision| {
         let path = path_to(evidence.source, evidence.pipeline, &decided.stage);

@@ -1,11 +1,11 @@
-//! What tells one pipeline, one garment, one file from another.
+//! Digests that identify a pipeline, a garment, a file.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use toile_core::artifact::{Artifact, Digest, Digester, Garment};
 use toile_pipeline::Pipeline;
 
-/// What tells one pipeline from another: its stages with versions, plugins and parameters.
+/// The digest that identifies a pipeline: of its stages with versions, plugins and parameters.
 pub fn digest(pipeline: &Pipeline, more: &[&str]) -> String {
     let mut d = Digester::new();
     for node in &pipeline.nodes {

@@ -1,4 +1,4 @@
-//! Numbers to so many digits: nobody reads more, and what is alike becomes equal.
+//! Rounds numbers to so many digits, so that they are readable and nearly equal ones become equal.
 
 /// A number to so many significant digits, at least one.
 pub fn to_digits(x: f64, digits: usize) -> f64 {

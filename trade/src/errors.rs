@@ -1,5 +1,4 @@
-//! How far a garment is from the reference, in what its maker cares about. No two figures are
-//! blended.
+//! How far a garment is from the reference, in separate figures that are never combined into one.
 
 use crate::measure::Ran;
 use crate::silhouette::{ViewSide, agreement};
@@ -84,7 +83,7 @@ pub fn compare(found: &Ran, reference: &Ran) -> Result<Errors, StageError> {
 }
 
 /// Girth of the garment minus the body's there, millimetres, by the name of the height; nothing
-/// where the garment does not reach it or nobody wears it.
+/// where the garment does not reach that height or has no body.
 pub fn ease(ran: &Ran) -> BTreeMap<String, f64> {
     let Some(body) = &ran.body else { return BTreeMap::new() };
     let at = |(name, height, middle): (&str, f64, f64)| {

@@ -1,8 +1,8 @@
 //! The tape measure around a garment or a body at some height.
 //!
-//! The surface is cut by a level plane; pieces of the cut that hang together form one curve each;
-//! the trunk's is the longest of those that go around the middle. A tape spans hollows, so a girth
-//! is the length of the convex hull (ISO 8559). Cost: one pass over the triangles. Limit: where the
+//! The surface is cut by a level plane; connected pieces of the cut form one curve each; the
+//! trunk's is the longest of those that go around the middle. A tape spans hollows, so a girth is
+//! the length of the convex hull (ISO 8559). Cost: one pass over the triangles. Limit: where the
 //! garment is open at that height (a neckline), the tape still closes.
 
 use std::collections::BTreeMap;

@@ -15,7 +15,7 @@ use toile_pipeline::{Override, Pipeline};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SavingBasis {
-    /// Runs of this very pipeline with the decision turned round (`toile trade --ablate`).
+    /// Runs of this very pipeline with the decision reversed (`toile trade --ablate`).
     Measured,
     /// The cost model, for the pipeline with the decision and without it.
     Modelled,
@@ -89,7 +89,7 @@ pub struct Evidence<'a> {
 }
 
 impl Evidence<'_> {
-    /// What a decision saves, by the best that is known.
+    /// What a decision saves, from the best source that is known.
     pub fn saving(&self, decided: &StageDecision) -> Saving {
         self.measured(decided).unwrap_or_else(|| match decided.decision.saves {
             Saves::Share(share) => self.estimated(decided, share),

@@ -13,7 +13,7 @@ const VERSION: u32 = 1;
 
 /// Why it is not judged whether the garment is at rest.
 const REST: &str =
-    "not judged: forces need the fabric and the friction, which the files of a garment do not tell";
+    "not judged: forces need the fabric and the friction, which the files of a garment do not contain";
 
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -71,7 +71,7 @@ pub struct Compared {
 }
 
 impl Certificate {
-    /// Of a judgement; a garment that is compared must hold, too.
+    /// The verdict of a judgement; a second garment that is compared must hold as well.
     #[must_use]
     pub fn new(
         inputs: Vec<InputFile>,

@@ -29,7 +29,7 @@ const FIRST: [&str; 2] = ["garment.glb", "result.obj"];
 /// Heights of people, metres.
 const HEIGHTS: (f64, f64) = (0.5, 2.5);
 
-/// What is asked for.
+/// What is requested.
 #[derive(Debug, Clone, Default)]
 pub struct AskedFiles {
     /// A garment's file, or the folder of a run.
@@ -48,7 +48,7 @@ pub struct AskedFiles {
     pub limits: CheckLimits,
 }
 
-/// The certificate of what is asked for, and the folder of the garment.
+/// The certificate of what is requested, and the folder of the garment.
 ///
 /// # Errors
 /// A file that cannot be read, with its place and a remedy.
@@ -130,7 +130,7 @@ impl FileReader {
             Some("dxf") => DxfPattern { file, seams, ..DxfPattern::default() }.run(&cx)?.0,
             Some("svg") => SvgPattern { file, seams, ..SvgPattern::default() }.run(&cx)?.0,
             _ => {
-                let what = format!("\"{file}\" is no pattern by its name");
+                let what = format!("\"{file}\" is not a .json, .dxf or .svg file");
                 return Err(
                     unreadable(what).hint("name a pattern of GarmentCode (.json), a .dxf or an .svg file")
                 );
@@ -207,7 +207,7 @@ pub fn subject(
     let seams = match (pieces, garment.seams.is_empty()) {
         (_, false) => Ok(()),
         (Some(_), true) => Err(format!(
-            "\"{FILE}\" tells no seams: run the pipeline again, or name the pattern with `--pattern`"
+            "\"{FILE}\" has no seams: run the pipeline again, or name the pattern with `--pattern`"
         )),
         (None, true) => Err("no pattern was given: name one with `--pattern`".to_owned()),
     };

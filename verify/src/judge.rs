@@ -84,7 +84,7 @@ impl Judgement {
     }
 
     fn judge(&mut self, name: &'static str, value: f64, unit: &'static str, limit: f64, words: String) {
-        // What is no number does not hold.
+        // NaN does not hold.
         let verdict = if value <= limit { Verdict::Holds } else { Verdict::Fails };
         self.checks.push(FigureCheck { name, verdict, value: Some(value), unit, limit, words });
     }

@@ -314,8 +314,8 @@ impl LaySearch<'_> {
         one[k] = Some(i);
         let other = (0..chosen.len()).find(|o| *o != k && self.piece(chosen, *o) == Some(piece));
         let Some(other) = other else {
-            // A panel that is taken off its piece for a free one leaves seams open that count no
-            // more.
+            // Moving a panel from its piece to a free one only makes its seams uncounted, which is
+            // no gain.
             return if had.is_none_or(|h| h == piece) { vec![one] } else { Vec::new() };
         };
         let swap = |(j, l): (usize, &Laid)| {

@@ -11,10 +11,10 @@
 //! - [`compare`]: two garments of one pattern side by side.
 //! - [`certificate`]: what is written, and its words.
 //!
-//! Nothing that a run says of itself is believed: of a run's folder the garment, the body and the
-//! flat pieces are read, no figure. Every sum runs in a fixed order, so that the result does not
-//! depend on the number of threads. Limit: whether the garment is at rest is not judged; forces
-//! need the fabric, which no file of a garment tells.
+//! No figure that a run wrote is used: of a run's folder only the garment, the body and the flat
+//! pieces are read. Every sum runs in a fixed order, so that the result does not depend on the
+//! number of threads. Limit: whether the garment is at rest is not judged; forces need the fabric,
+//! which no file of a garment contains.
 
 pub mod certificate;
 pub mod compare;

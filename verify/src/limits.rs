@@ -1,11 +1,11 @@
-//! What a garment is held against.
+//! What a garment is compared with.
 
 /// Limits of the checks; shares unless a unit is named.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CheckLimits {
     /// Greatest gap of a seam, metres.
     pub gap: f64,
-    /// Greatest way between a panel's flat outline and that of its piece, metres.
+    /// Greatest distance between a panel's flat outline and that of its piece, metres.
     pub outline: f64,
     /// Greatest area error of a panel, as `Measure` has it: what the body stretches counts as it
     /// was cut.

@@ -1,8 +1,8 @@
 //! Gaps of seams.
 //!
 //! A seam of a pattern is measured between its sides in space: vertex by vertex where both have as
-//! many, which also tells of sides that are shifted along each other; else by the farthest that a
-//! vertex of one is from the other side as a polyline. A seam that a file tells as pairs of
+//! many, which also shows sides that are shifted along each other; else by the farthest that a
+//! vertex of one is from the other side as a polyline. A seam that a file gives as pairs of
 //! vertices is measured by those. Limits: seams along lines inside a piece, pleats and bands of one
 //! side are not measured; they are listed with the reason.
 
@@ -36,7 +36,7 @@ pub struct Gaps {
     pub unmeasured: Vec<(String, String)>,
 }
 
-/// Gaps of the seams that the garment tells as pairs of vertices.
+/// Gaps of the seams that the garment gives as pairs of vertices.
 #[must_use]
 pub fn by_pairs(garment: &Garment) -> Gaps {
     let gap = |s: &GarmentSeam| {
@@ -59,7 +59,7 @@ pub fn by_pattern(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> G
     gaps
 }
 
-/// The seams of the pattern as pairs of vertices, where their sides have as many.
+/// The seams of the pattern as pairs of vertices, where both sides have equally many.
 #[must_use]
 pub fn pairs(garment: &Garment, pattern: &Pattern, laid: &ByPiece<'_>) -> Vec<GarmentSeam> {
     let length = |side: &[u32]| {

@@ -2,7 +2,7 @@
 //!
 //! Method: the deformation gradient `F` of each triangle from its flat corners to those in space.
 //! Its singular values are the greatest and least stretch; the images of the flat unit vectors
-//! along y and x tell warp and weft, the angle between them less than 90 degrees the shear. Area
+//! along y and x give warp and weft, the angle between them less than 90 degrees the shear. Area
 //! and outline errors are those of Fan et al. 1999; what the body stretches counts as it was cut
 //! (`toile_drape::measure::tight`). Along gathered seams the flat corners are drawn together as a
 //! solver has them. Cost: linear.

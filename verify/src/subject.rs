@@ -33,7 +33,7 @@ pub struct Subject {
 pub struct WearerBody {
     /// The mesh; its landmarks are empty where they could not be found.
     pub body: Body,
-    /// Whether inside and outside can be told.
+    /// Whether inside and outside can be distinguished.
     pub closed: Result<(), String>,
     /// Whether it has landmarks and girths.
     pub measured: Result<(), String>,
@@ -103,7 +103,8 @@ pub(crate) fn panel(
     GarmentPanel { name, vertices, triangles, boundary: Vec::new(), photo_px: Vec::new(), fabric }
 }
 
-/// The garment with boundaries and joined vertices, as its positions and triangles tell them.
+/// The garment with boundaries and joined vertices, as they follow from its positions and
+/// triangles.
 pub(crate) fn finished(mut garment: Garment) -> Garment {
     garment.velocities = vec![Vector3::zeros(); garment.positions.len()];
     for k in 0..garment.panels.len() {

@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     /// Colour messages: on a terminal unless NO_COLOR is set or TERM is dumb, always, or never
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = Color::Auto, global = true)]
     pub(crate) color: Color,
-    /// Say nothing but errors and the answer that is asked for: no progress, no warnings, no
+    /// Say nothing but errors and the answer that is requested: no progress, no warnings, no
     /// summary
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,

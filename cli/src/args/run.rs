@@ -16,7 +16,7 @@ pub(crate) struct RunArgs {
     /// Stop after this stage and write what it made
     #[arg(long, value_name = "STAGE")]
     pub(crate) until: Option<String>,
-    /// Run this stage though nothing asked for depends on it; may be given again
+    /// Run this stage although no requested result depends on it; may be given again
     #[arg(long, value_name = "STAGE")]
     pub(crate) also: Vec<String>,
     /// Write every stage's artifacts as files as well

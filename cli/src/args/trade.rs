@@ -13,7 +13,7 @@ use toile_trade::qualities::AskedQuality;
 pub(crate) struct TradeArgs {
     /// The pipeline file
     pub(crate) pipeline: PathBuf,
-    /// What to turn, like `mesher.edge=6..24 mm` or `solver=StaticEquilibrium,Xpbd`; may be given
+    /// What to vary, like `mesher.edge=6..24 mm` or `solver=StaticEquilibrium,Xpbd`; may be given
     /// again [default: edge length, mesher and solver]
     #[arg(long = "knob", value_name = "KEY=VALUES")]
     pub(crate) knobs: Vec<String>,
@@ -31,8 +31,8 @@ pub(crate) struct TradeArgs {
     /// tried either
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub(crate) starts: usize,
-    /// Instead: turn round each decision that `toile explain` shows, one at a time, and print what
-    /// it saves and changes
+    /// Instead: reverse each decision that `toile explain` shows, one at a time, and print what it
+    /// saves and changes
     #[arg(long, conflicts_with_all = ["knobs", "points", "starts", "jitter", "reference", "clock"])]
     pub(crate) ablate: bool,
     /// Print the record as one JSON object on standard output and nothing else
@@ -101,7 +101,7 @@ pub(crate) struct TuneArgs {
     /// Moved starts that must keep the error as well
     #[arg(long, value_name = "COUNT", default_value_t = 10)]
     pub(crate) starts: usize,
-    /// What to turn where nothing is measured yet, as for `toile trade`
+    /// What to vary where nothing is measured yet, as for `toile trade`
     #[arg(long = "knob", value_name = "KEY=VALUES")]
     pub(crate) knobs: Vec<String>,
     /// Print one JSON object on standard output and nothing else

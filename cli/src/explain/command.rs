@@ -17,7 +17,7 @@ use toile_trade::cost::{Forecast, forecast_lines, predict};
 use toile_trade::decided::{self, told};
 use toile_trade::saving::Evidence;
 
-/// Prints one line a stage: what feeds it, and whether it runs; then what is expected, and the
+/// Prints one line per stage: what feeds it, and whether it runs; then what is expected, and the
 /// decisions.
 pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     let (source, pipeline) = match opened(&args.pipeline, &args.overrides, registry, args.json, streams) {

@@ -1,7 +1,7 @@
 //! Ctrl-C, and the other signals that ask a program to end (TERM, HUP): the run is asked to stop,
 //! and the program is stopped where a stage does not listen; what did not listen is named.
 //!
-//! A plugin has longer than a stage of this program: whoever waits for it says which one it is
+//! A plugin has longer than a stage of this program: the code that waits for it names it
 //! (`toile_pipeline::plugin`). A second signal ends the program at once. HUP stays ignored where it
 //! is, as under `nohup`.
 
@@ -103,7 +103,7 @@ fn cut_off(after: Duration) -> ! {
     last_words::say(
         ErrorCode::Cancelled,
         &message,
-        "the program was ended there; files that were written before are whole",
+        "the program was stopped there; files that were written before are complete",
     );
     last_words::leave(exit::STOPPED)
 }

@@ -1,5 +1,5 @@
-//! What the program says where it ends elsewhere than at its end: a plugin ends it from within, or
-//! what is to stop does not.
+//! What the program prints if it does not end in the usual way: a plugin ends it, or something that
+//! was asked to stop does not stop.
 
 use crate::exit;
 use serde_json::json;
@@ -44,7 +44,7 @@ fn ended_by(who: &str) -> std::ffi::c_int {
     i32::from(exit::BUG)
 }
 
-/// Says an error where no stream is at hand. What cannot be written is lost.
+/// Prints an error where no stream is available. Output that cannot be written is lost.
 pub(crate) fn say(code: ErrorCode, message: &str, hint: &str) {
     if JSON.load(Ordering::SeqCst) {
         let record = json!({ "error": code.as_str(), "message": message, "hint": hint });

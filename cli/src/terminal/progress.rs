@@ -33,7 +33,7 @@ impl Bar {
         Bar { bar, ids, notes: Mutex::default(), warnings: Mutex::default() }
     }
 
-    /// Takes the bar away and gives what the stages told, each with its stage.
+    /// Removes the bar and returns the notes and warnings of the stages, each with its stage.
     pub(crate) fn finish(&self) -> Remarks {
         self.bar.finish_and_clear();
         let take = |told: &Mutex<Vec<(String, String)>>| {
@@ -65,7 +65,7 @@ impl Listener for Bar {
     }
 }
 
-/// Keeps what `who` told, unless another stage has told the same.
+/// Keeps the text of `who`, unless another stage has given the same text.
 fn told(list: &Mutex<Vec<(String, String)>>, who: String, text: &str) {
     let mut list = list.lock().unwrap_or_else(PoisonError::into_inner);
     let stage = |who: &str| who.split(" (").next().map(str::to_owned);
@@ -77,7 +77,7 @@ fn told(list: &Mutex<Vec<(String, String)>>, who: String, text: &str) {
     }
 }
 
-/// Runs `work` on the threads asked for; what it tells is shown line by line above a bar of the
+/// Runs `work` on the requested threads; what it reports is shown line by line above a bar of the
 /// budget.
 pub(crate) fn with_budget<T: Send>(
     study: &StudyArgs,
@@ -121,8 +121,8 @@ fn measuring(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar 
     bar
 }
 
-/// A bar on standard error, of no colour; silent where that is no terminal, a dumb one, or nothing
-/// but errors is to be said.
+/// A bar on standard error, without colour. It is hidden where standard error is no terminal or a
+/// dumb one, or with `--quiet`.
 pub(crate) fn drawn(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar {
     let target = if streams.is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(length), target);
@@ -140,7 +140,7 @@ fn tick(bar: &ProgressBar, milliseconds: u64) {
     }
 }
 
-/// Works on a thread of its own, and shows what it tells.
+/// Runs the work on a thread of its own, and shows what it reports.
 fn shown<T: Send, M: Send>(
     bar: &ProgressBar,
     threads: Option<u16>,
@@ -158,7 +158,7 @@ fn shown<T: Send, M: Send>(
         let worker = match worker {
             Ok(worker) => worker,
             Err(e) => {
-                let message = format!("there is no thread for a measurement: {e}");
+                let message = format!("cannot start a thread for a measurement: {e}");
                 return (Err(StageError::internal(message)), Vec::new());
             }
         };
@@ -166,7 +166,9 @@ fn shown<T: Send, M: Send>(
             let line = told(bar, message);
             bar.suspend(|| streams.notice(&line));
         }
-        worker.join().unwrap_or_else(|_| (Err(StageError::internal("the measurement broke off")), Vec::new()))
+        worker
+            .join()
+            .unwrap_or_else(|_| (Err(StageError::internal("the measurement ended unexpectedly")), Vec::new()))
     });
     bar.finish_and_clear();
     of_threads.into_iter().for_each(|words| streams.warn(words));

@@ -25,7 +25,7 @@ impl<'a> Streams<'a> {
         Streams { apart, out, err, lost: None, colour: Color::Auto.is_on(), quiet: false }
     }
 
-    /// Takes the manners that the user asks for.
+    /// Sets colour and quietness as the user asks.
     pub(crate) fn behave(&mut self, color: Color, quiet: bool) {
         (self.colour, self.quiet) = (color.is_on(), quiet);
     }
@@ -41,7 +41,7 @@ impl<'a> Streams<'a> {
         self.note(written);
     }
 
-    /// Says that work went well and what came of it, to people that want to know.
+    /// Prints that work went well and what came of it, unless `--quiet` is given.
     pub(crate) fn report(&mut self, line: impl std::fmt::Display) {
         if !self.quiet {
             self.say(line);
@@ -59,7 +59,7 @@ impl<'a> Streams<'a> {
         exit::USAGE
     }
 
-    /// Tells the person at the terminal how work goes.
+    /// Shows the person at the terminal how work goes.
     pub(crate) fn notice(&mut self, line: impl std::fmt::Display) {
         if !self.quiet {
             self.tell(line);

@@ -1,4 +1,4 @@
-//! The threads that a command works on: as many as are asked for, as the machine has cores, as the
+//! The threads that a command works on: as many as are requested, as the machine has cores, as the
 //! system gives.
 
 use crate::Streams;
@@ -8,8 +8,8 @@ use std::num::NonZero;
 /// Threads, where there are some.
 pub(crate) type Pool = Result<ThreadPool, ThreadPoolBuildError>;
 
-/// A pool of threads for work of the present thread; what is asked for beyond the machine's cores,
-/// and what the system does not give, is told.
+/// A pool of threads for work of the present thread. Warns if more threads are requested than the
+/// machine has cores, or than the system gives.
 ///
 /// More threads than cores only wait for each other. Where the system starts no thread at all, the
 /// present one does the work.
@@ -43,14 +43,14 @@ pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// A pool of threads for work of the present thread on a machine of so many cores, and what is to
-/// be told of it.
+/// A pool of threads for work of the present thread on a machine of so many cores, and the warnings
+/// about it.
 pub(crate) fn pool_of(asked: Option<u16>, cores: usize) -> (Pool, Vec<String>) {
     let mut told = Vec::new();
     let most = asked.map_or(cores, usize::from);
     if most > cores {
         told.push(format!(
-            "{most} threads are asked for and this machine has {}; it works on {cores}",
+            "{most} threads are requested and this machine has {}; it works on {cores}",
             cores_in_words(cores)
         ));
     }
@@ -85,7 +85,7 @@ mod tests {
     fn threads_are_bounded_by_cores_and_that_is_told() {
         let (pool, told) = pool_of(Some(1024), 2);
         assert_eq!(pool.unwrap().current_num_threads(), 2);
-        assert_eq!(told, ["1024 threads are asked for and this machine has 2 cores; it works on 2"]);
+        assert_eq!(told, ["1024 threads are requested and this machine has 2 cores; it works on 2"]);
         let (pool, told) = pool_of(Some(2), 4);
         assert_eq!((pool.unwrap().current_num_threads(), told.len()), (2, 0));
         let (pool, told) = pool_of(None, 3);

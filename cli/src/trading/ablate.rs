@@ -1,4 +1,4 @@
-//! `toile trade PIPELINE --ablate`: each decision of a pipeline turned round.
+//! `toile trade PIPELINE --ablate`: each decision of a pipeline reversed.
 
 use crate::args::TradeArgs;
 use crate::terminal::progress::with_runs;

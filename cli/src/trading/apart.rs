@@ -22,8 +22,8 @@ pub(crate) fn again(program: Option<&Apart>) -> Command {
     command
 }
 
-/// Runs the task that stands on the first line of standard input. The rest of the input is the
-/// parent's life: where it ends before the answer, nobody waits for one.
+/// Runs the task on the first line of standard input. The rest of the input stays open while the
+/// parent runs: if it ends before the answer, the parent has ended and the task stops.
 pub(crate) fn run(registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     let (mut input, mut line) = (BufReader::new(stdin()), String::new());
     if let Err(e) = input.read_line(&mut line) {

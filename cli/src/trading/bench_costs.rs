@@ -64,7 +64,7 @@ fn measure(
     };
     // One pool for all runs: threads that end give memory back in the midst of the next run.
     let pool = threads::pool(args.threads, streams);
-    let pool = pool.map_err(|e| refused(&format!("there are no threads: {e}"), streams))?;
+    let pool = pool.map_err(|e| refused(&format!("cannot start threads: {e}"), streams))?;
     let mut records = Vec::new();
     for setting in &settings {
         let mut runs = Vec::new();

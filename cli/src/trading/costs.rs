@@ -12,7 +12,7 @@ use toile_trade::cost::{
     note, shipped, sizes,
 };
 
-/// What is known of this machine's runs; read, and fitted, when it is first asked for.
+/// What is known of this machine's runs; read, and fitted, when it is first requested.
 #[derive(Debug)]
 pub(crate) struct KnownCosts {
     store: Option<CostStore>,
@@ -91,7 +91,7 @@ pub(crate) fn stopwatch() -> Stopwatch {
     })
 }
 
-/// Prediction beside fact, for people.
+/// Predicted and measured values side by side, for people.
 pub(crate) fn beside(metrics: &Metrics, known: &KnownCosts) -> Vec<String> {
     let both = |s: &toile_pipeline::StageMetrics| Some((s.id.clone(), s.used?, s.predicted?));
     let stages: Vec<_> = metrics.stages.iter().filter_map(both).collect();

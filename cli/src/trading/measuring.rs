@@ -12,7 +12,7 @@ use toile_pipeline::{Pipeline, RunOptions};
 use toile_trade::knobs::source::Source;
 use toile_trade::measure::Bench;
 
-/// The pipeline with its source, checked; faults are shown, as JSON where asked for.
+/// The pipeline with its source, checked; faults are shown, as JSON where requested.
 pub(crate) fn opened<'a>(
     path: &Path,
     overrides: &Overrides,
@@ -37,8 +37,8 @@ pub(crate) fn opened<'a>(
     Ok((source, pipeline))
 }
 
-/// Asks the stages that will run what is wrong with their parameters and files: a measurement would
-/// tell it of its first run alone.
+/// Checks the parameters and files of the stages that will run: a measurement would report their
+/// faults of its first run only.
 pub(crate) fn inspected(
     pipeline: &Pipeline,
     until: Option<String>,
@@ -64,7 +64,7 @@ pub(crate) fn failed(e: &StageError, streams: &mut Streams<'_>) -> u8 {
     e.code.exit_code()
 }
 
-/// The quality that is asked for.
+/// The quality that is requested.
 pub(crate) fn quality(overrides: &Overrides) -> Option<&str> {
     overrides.quality.as_deref()
 }

@@ -74,7 +74,7 @@ pub(crate) fn measured(
         knobs = default_knobs(pipeline, source.registry);
     }
     if knobs.is_empty() {
-        let message = "the pipeline has no knob that is turned by itself";
+        let message = "the pipeline has no knob that is varied by default";
         return Err(StageError::invalid(message).hint("name some, like `--knob \"mesher.edge=6..24 mm\"`"));
     }
     let options = StudyOptions {

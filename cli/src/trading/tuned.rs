@@ -24,7 +24,7 @@ pub(crate) fn front(
         let path = folder.join("trade.json");
         let refuse = |why: String| {
             StageError::invalid(format!("cannot read \"{}\": {why}", path.display()))
-                .hint("--from is the folder of a `toile trade`")
+                .hint("give `--from` the folder that `toile trade` wrote")
         };
         let text = toile_core::read_text(&path).map_err(|e| refuse(e.to_string()))?;
         let trade: Trade = serde_json::from_str(&text).map_err(|e| refuse(e.to_string()))?;

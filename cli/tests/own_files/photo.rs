@@ -78,7 +78,7 @@ fn drawn(half: &Half, cloth: [f64; 3], ground: impl Fn(f64, f64) -> [f64; 3]) ->
     let (width, height) = (2.0 * (most(0) + MARGIN), most(1) + 2.0 * MARGIN);
     let picture = RgbImage::from_fn((width * PX) as u32, (height * PX) as u32, |i, j| {
         let at = |sub: f64, of: u32| (f64::from(of) + sub) / PX;
-        // Four samples a pixel.
+        // Four samples per pixel.
         let inside = [[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]]
             .iter()
             .filter(|[u, v]| is_inside(&outline, [at(*u, i) - width / 2.0, at(*v, j) - MARGIN]))

@@ -38,11 +38,11 @@ struct ParamArgs {
 struct ParamTable {
     /// The default of each.
     defaults: Vec<TokenStream>,
-    /// Their rows, in lists: one of each parameter, all of a group.
+    /// Lists of documentation rows: one row for a parameter, all rows of a group.
     rows: Vec<TokenStream>,
-    /// Their names, likewise.
+    /// Lists of names, in the same way.
     names: Vec<TokenStream>,
-    /// Arms that read those that are no group.
+    /// Match arms that read the parameters that are not groups.
     reads: Vec<TokenStream>,
     writes: Vec<TokenStream>,
     groups: Vec<Ident>,

@@ -1,8 +1,8 @@
 //! Pipelines of Toile: loading, planning and running them.
 //!
 //! A *pipeline* is a RON file that wires *stages*. [`load`] makes a checked graph of its text,
-//! [`plan`] drops what nothing asked for, [`run`] runs the rest. What a stage and an artifact are
-//! is said by [`toile_core`], on which alone the author of a stage depends.
+//! [`plan`] drops stages that no requested result needs, [`run`] runs the rest. What a stage and an
+//! artifact are is said by [`toile_core`], on which alone the author of a stage depends.
 //!
 //! - `load`: loader, faults, graph, overrides, qualities, migrations of old files.
 //! - `run`: planner and runner; [`cache`]: results of earlier runs; [`lock`]: what a run was made

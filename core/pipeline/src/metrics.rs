@@ -48,7 +48,7 @@ pub struct GarmentMetrics {
     pub figures: GarmentFigures,
     /// Threads used.
     pub threads: usize,
-    /// Greatest memory held, bytes, where the system tells.
+    /// Greatest memory held, bytes, where the system reports it.
     pub peak_memory_bytes: Option<u64>,
 }
 

@@ -9,9 +9,9 @@ use tempfile::NamedTempFile;
 use toile_core::artifact::OutputFile;
 use toile_core::{ErrorCode, StageError};
 
-/// Writes files below `dir`: every one first beside its place, then all are renamed, so that a stop
-/// or a full disk leaves no half file and, short of a failing rename, no half set. What a program
-/// that was killed meanwhile has left in these folders is swept.
+/// Writes files below `dir`: each under a temporary name beside its place, then all are renamed, so
+/// that a stop or a full disk leaves no partial file and, unless a rename fails, no partial set.
+/// Temporary files of a program that was killed are removed.
 ///
 /// A file that was there keeps its permissions.
 ///

@@ -65,9 +65,9 @@ pub struct Surface<'a> {
 /// scratch memory in `&self`; no lock is held while a query runs, so that queries may be made from
 /// inside a thread pool.
 ///
-/// Results are in the order told at each method, whatever the number of threads and whatever was
-/// asked before. A vertex that is no finite number is in no result, nor are triangles that name a
-/// vertex twice or one that does not exist.
+/// Results are in the order that each method states, for any number of threads and any earlier
+/// queries. A vertex that is not finite is in no result, nor are triangles that name a vertex twice
+/// or one that does not exist.
 pub trait Collide: Send + Sync + std::fmt::Debug {
     /// Its settings.
     fn card(&self) -> ColliderCard;
@@ -115,7 +115,7 @@ pub trait Collide: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// Named places on the body, by which people are told where something is. `None` where the
+    /// Named places on the body, which messages use to say where something is. `None` where the
     /// scheme knows none, as that of a plugin.
     fn landmarks(&self) -> Option<&BTreeMap<String, Point3>> {
         None

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A piecewise-linear force-strain curve through the origin, per metre of width.
 ///
-/// Points are (strain, N/m), both strictly rising; beyond the last point the last slope goes on;
+/// Points are (strain, N/m), both strictly rising; beyond the last point the last slope continues;
 /// compression follows the first slope.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve(pub Vec<(f64, f64)>);

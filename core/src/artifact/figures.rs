@@ -64,7 +64,7 @@ pub struct GarmentFigures {
     /// Pairs of triangles that cross; `None` where nothing looked.
     pub self_crossings: Option<usize>,
     /// The share that is still in its place on the body, of the panel that has slid farthest;
-    /// `None` where nothing told.
+    /// `None` where it was not measured.
     pub on_body: Option<f64>,
     /// By level (`bust`, `waist`, `hip`): where the garment closes around its body.
     pub girths: BTreeMap<String, GirthFigures>,

@@ -75,8 +75,8 @@ pub struct SolveStatus {
     /// the solver's last look.
     pub max_speed: f64,
     /// For each panel the share of it that is still in its place on the body, after all solvers: 1
-    /// less the way that its upper edge has sunk, as a share of its size. Empty where nothing told:
-    /// no body, no weight.
+    /// minus the distance that its upper edge has sunk, as a share of its size. Empty where it was
+    /// not measured: no body, no weight.
     pub on_body: Vec<f64>,
     /// How friction holds it, for a solver that goes on from there.
     pub held: Held,
@@ -85,7 +85,8 @@ pub struct SolveStatus {
 /// Other places from which the panels of a garment may be sewn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GarmentStart {
-    /// What is otherwise, in words that end "sewn ...": `with the legs where the file puts them`.
+    /// How this garment was sewn differently, in words that complete "sewn ...": `with the legs
+    /// where the file puts them`.
     pub told: String,
     /// Positions of all vertices, metres.
     pub positions: Vec<Point3>,

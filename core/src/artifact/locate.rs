@@ -57,7 +57,7 @@ impl Locator {
         }
         let mut cells: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
         for (k, [a, b, c]) in corners.iter().enumerate() {
-            // What lies by a needle is told by the triangles beside it.
+            // A point by a needle is located by the triangles beside it.
             if (b - a).perp(&(c - a)).abs() <= LEAST_SHAPE * extent(&corners[k]) {
                 continue;
             }

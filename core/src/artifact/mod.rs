@@ -1,4 +1,4 @@
-//! What travels on the edges of a pipeline.
+//! The artifacts that stages pass to each other.
 //!
 //! Every artifact is immutable once made, carries SI units (metres, kilograms, seconds) and `f64`
 //! coordinates, and can be digested, measured and shown. One mechanism, the [`Artifact`] trait,
@@ -90,8 +90,8 @@ pub trait Artifact: Any + Send + Sync + Debug {
     fn check(&self) -> Result<(), String>;
     /// The figures that goldens and the report keep of it.
     fn measures(&self) -> Measures;
-    /// The artifact as a record of plain fields, by which it is stored and crosses a plugin's
-    /// border; `None` for a service.
+    /// The artifact as a record of plain fields, in which form it is stored and passed to plugins;
+    /// `None` for a service.
     fn record(&self) -> Option<store::Record<'_>> {
         None
     }

@@ -63,9 +63,9 @@ pub struct Mesh {
     pub name: String,
     /// Vertices, metres.
     pub positions: Vec<Point3>,
-    /// Unit normals, one a vertex.
+    /// Unit normals, one per vertex.
     pub normals: Vec<Vector3>,
-    /// Texture coordinates, one a vertex: (0, 0) is the picture's top left, (1, 1) its bottom
+    /// Texture coordinates, one per vertex: (0, 0) is the picture's top left, (1, 1) its bottom
     /// right, and what lies outside is as [`Texture::repeats`] says. Empty where the material has
     /// no texture.
     pub uv: Vec<[f32; 2]>,
@@ -80,7 +80,7 @@ pub struct Mesh {
 pub struct Variant {
     /// Name, unlike that of any other variant.
     pub name: String,
-    /// Index into the model's materials, one a mesh.
+    /// Index into the model's materials, one per mesh.
     pub materials: Vec<usize>,
 }
 

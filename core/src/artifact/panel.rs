@@ -152,8 +152,8 @@ impl Artifact for Panel {
         m.push("box_height", (hi.y - lo.y) * 1e3, "mm", 0.5);
         m.count("boundary_loops", 1 + self.holes.len());
         m.push("least_angle", self.least_angle(), "deg", 2.0);
-        // How the vertices lie within the outline, which all else hardly tells: a mesher's or a
-        // smoother's own work.
+        // How the vertices lie within the outline, which the other measures hardly show: a mesher's
+        // or a smoother's own work.
         m.push("edge_rms", self.edge_rms() * 1e3, "mm", 0.001);
         m
     }

@@ -21,7 +21,7 @@ pub struct Air {
 pub struct Phase {
     /// Its name: `sew`, `drape`.
     pub name: String,
-    /// How long it lasts, seconds; solvers that go straight to rest do not look at it.
+    /// How long it lasts, seconds; static solvers do not use it.
     pub seconds: f64,
     /// Acceleration, m/s2.
     pub gravity: Vector3,

@@ -34,9 +34,9 @@ impl Picture for GrayImage {
 
 #[cfg(not(feature = "image"))]
 mod own {
-    /// A colour picture, sRGB, three bytes a pixel.
+    /// A colour picture, sRGB, three bytes per pixel.
     pub type RgbImage = Rows<3>;
-    /// A grey picture, one byte a pixel.
+    /// A grey picture, one byte per pixel.
     pub type GrayImage = Rows<1>;
 
     /// Rows of pixels of `C` bytes.

@@ -14,7 +14,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// True where a fact lies in the range.
+    /// True where a measured value lies in the range.
     pub fn holds(&self, fact: f64) -> bool {
         (self.low..=self.high).contains(&fact)
     }

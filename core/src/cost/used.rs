@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 pub struct Used {
     /// Wall time, seconds.
     pub wall_s: f64,
-    /// Processor time of all threads, seconds; none where nobody measures it.
+    /// Processor time of all threads, seconds; none where it is not measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cpu_s: Option<f64>,
-    /// Memory at its peak beyond what was held before, bytes; none where nobody counts. Entries of
-    /// a set that run at the same time share it.
+    /// Memory at its peak beyond what was held before, bytes; none where it is not counted. Entries
+    /// of a set that run at the same time share it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_bytes: Option<u64>,
     /// Memory that stayed held after it beyond what was held before, bytes.

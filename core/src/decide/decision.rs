@@ -66,7 +66,7 @@ pub enum Saves {
     Share(f64),
 }
 
-/// How a decision is turned round.
+/// How a decision is reversed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Turn {
@@ -86,9 +86,9 @@ pub enum Turn {
 pub struct Decision {
     /// The rule, one word or a few with hyphens: `texture-size`.
     pub rule: String,
-    /// What became of what it speaks of.
+    /// What became of the part of the work that it is about.
     pub state: State,
-    /// What it speaks of, in words.
+    /// The part of the work that it is about, in words.
     pub what: String,
     /// The fact of the scene, in words, with its figures.
     pub fact: String,
@@ -98,6 +98,6 @@ pub struct Decision {
     pub saves: Saves,
     /// Where the rule comes from: author and year, or a page of this product.
     pub source: String,
-    /// How it is turned round.
+    /// How it is reversed.
     pub turn: Turn,
 }

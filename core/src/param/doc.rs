@@ -24,8 +24,8 @@ pub struct ParamDoc {
     pub trades: bool,
     /// Which way it is refined where it is a resolution; none where it is none.
     pub finer: Option<Finer>,
-    /// True where the stage does other work with another value than its default: what that costs is
-    /// told by records of its own.
+    /// True where the stage does different work if the value is not the default: the cost of that
+    /// is recorded separately.
     pub way: bool,
     /// Parses a RON text as this parameter's type and checks its numbers' range.
     pub check: Check,

@@ -37,7 +37,7 @@ pub fn write<T: Params, S: Serializer>(params: &T, stage: &'static str, s: S) ->
     out.end()
 }
 
-/// The names of all parts, one after the other, where `N` are there; no two may be alike.
+/// The `N` names of all parts, one after the other. Fails to compile if two are alike.
 #[doc(hidden)]
 pub const fn joined<const N: usize>(parts: &[&[&'static str]]) -> [&'static str; N] {
     let (mut all, mut count, mut part) = ([""; N], 0, 0);

@@ -15,16 +15,16 @@ pub(super) fn type_fault(text: &str, doc: &ParamDoc, e: &ron::error::SpannedErro
     let message = match &e.code {
         E::IntegerOutOfBounds => {
             let range = text.parse().ok().and_then(|x| check_number(x, doc).err());
-            range.unwrap_or_else(|| format!("`{name}` wants {wants}: {reason}"))
+            range.unwrap_or_else(|| format!("`{name}` must be {wants}: {reason}"))
         }
-        // The type's own words name the value; those of the parser name what it wanted.
+        // The type's own message names the value; that of the parser names what it expected.
         E::Message(_) => format!("`{name}`: {reason}"),
         E::NoSuchStructField { .. } | E::DuplicateStructField { .. } => format!("{reason} in `{name}`"),
-        E::InvalidValueForType { expected, found } => format!("`{name}` wants {expected}, found {found}"),
+        E::InvalidValueForType { expected, found } => format!("`{name}` must be {expected}, found {found}"),
         code if expected(code).is_some() => {
-            format!("`{name}` wants {wants}, found {}", found(text, offset, code))
+            format!("`{name}` must be {wants}, found {}", found(text, offset, code))
         }
-        _ => format!("`{name}` wants {wants}: {reason}"),
+        _ => format!("`{name}` must be {wants}: {reason}"),
     };
     ParamFault { message, reason, hint: ron_hint(&e.code), offset }
 }
@@ -33,7 +33,7 @@ pub(super) fn type_fault(text: &str, doc: &ParamDoc, e: &ron::error::SpannedErro
 pub fn ron_fault(text: &str, e: &ron::error::SpannedError) -> (String, Option<usize>) {
     use ron::Error as E;
     let at = byte_offset(text, &e.span.start);
-    // ron points behind the name of a field that it does not want.
+    // ron points behind the name of a field that it does not know.
     let name_at = |name: &str| text.get(..byte_offset(text, &e.span.end)?)?.rfind(name).or(at);
     match &e.code {
         E::NoSuchStructField { found, .. } => (format!("unknown field `{found}`"), name_at(found)),
@@ -51,7 +51,7 @@ pub fn ron_fault(text: &str, e: &ron::error::SpannedError) -> (String, Option<us
     }
 }
 
-/// What the parser wanted, where it says no more than that.
+/// What the parser expected, where its message says only that.
 fn expected(e: &ron::Error) -> Option<&'static str> {
     use ron::Error as E;
     match e {

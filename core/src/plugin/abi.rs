@@ -1,9 +1,9 @@
-//! The types that cross the border of a plugin, as C has them (`core/include/toile_plugin.h`).
+//! The types that cross the plugin ABI, as C has them (`core/include/toile_plugin.h`).
 //!
-//! Rules, told in full in docs/reference/plugin-abi.md: nothing but these types and plain numbers
-//! crosses; fields are only ever added at the end of a structure, with a new minor version; whoever
-//! passes memory keeps it until the call that passed it returns; nobody frees what the other side
-//! made.
+//! Rules, given in full in docs/reference/plugin-abi.md: nothing but these types and plain numbers
+//! crosses; fields are only ever added at the end of a structure, with a new minor version; the
+//! side that passes memory keeps it until the call that passed it returns; neither side frees what
+//! the other side made.
 
 use std::ffi::c_void;
 
@@ -17,9 +17,9 @@ pub const MINOR: u32 = 2;
 
 /// What a call gives back: done.
 pub const OK: i32 = 0;
-/// What a call gives back: it could not do its work, and has told why through [`Host::fail`].
+/// Result of a call that could not do its work, and has given the reason through [`Host::fail`].
 pub const FAILED: i32 = 1;
-/// What a call gives back: it panicked, and has told its message through [`Host::fail`].
+/// Result of a call that panicked, and has given the message through [`Host::fail`].
 pub const PANICKED: i32 = 2;
 
 /// UTF-8 text, not ended by a zero.
@@ -110,7 +110,7 @@ pub const ARITY_EACH: u32 = 1;
 pub const ARITY_ALL: u32 = 2;
 /// The stage can do without.
 pub const PORT_OPTIONAL: u32 = 1;
-/// It wants the first made of its kind.
+/// It takes the first made of its kind.
 pub const PORT_ORIGINAL: u32 = 2;
 
 /// A parameter.
@@ -145,7 +145,8 @@ pub const PARAM_TRADES: u32 = 1;
 pub const PARAM_FINER_LESS: u32 = 2;
 /// It is a resolution, and more is finer.
 pub const PARAM_FINER_MORE: u32 = 4;
-/// Another value than its default makes the stage do other work, whose cost is told apart.
+/// A value other than the default makes the stage do different work, whose cost is recorded
+/// separately.
 pub const PARAM_WAY: u32 = 8;
 
 /// One artifact that a stage is given.
@@ -223,14 +224,14 @@ pub struct Host {
         Option<unsafe extern "C" fn(ctx: *mut c_void, port: u32, collider: *const Collider) -> i32>,
     /// Answers a question for a text, such as [`StageTable::params`].
     pub answer: Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)>,
-    /// Tells why a call fails: code (`invalid_input`, ...), one sentence in lower case, a hint (may
-    /// be empty), and the parameter at fault (may be empty; of a check, the reason without the
-    /// parameter's name).
+    /// Gives the reason why a call fails: code (`invalid_input`, ...), one sentence in lower case,
+    /// a hint (may be empty), and the parameter at fault (may be empty; of a check, the reason
+    /// without the parameter's name).
     pub fail:
         Option<unsafe extern "C" fn(ctx: *mut c_void, code: Text, message: Text, hint: Text, about: Text)>,
-    /// Tells what the user should look at; it also stands in the report.
+    /// Warns of something that the user should look at; the warning is also in the report.
     pub warn: Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)>,
-    /// Tells how far the work has come, 0 to 1, and what it is at.
+    /// Reports the share of the work that is done, 0 to 1, and what it is doing.
     pub progress: Option<unsafe extern "C" fn(ctx: *mut c_void, share: f64, text: Text)>,
     /// Keeps a figure for report and metrics.
     pub figure: Option<unsafe extern "C" fn(ctx: *mut c_void, name: Text, value: f64, unit: Text)>,
@@ -246,12 +247,11 @@ pub struct Host {
             body: Option<unsafe extern "C" fn(data: *mut c_void, index: usize)>,
         ),
     >,
-    /// Since 1.1. Tells that a file was read, so that the stage runs again when it has changed: its
-    /// path as the pipeline names it, and the BLAKE3 digest of its content, 32 bytes, or null: the
-    /// program then looks itself.
+    /// Since 1.1. Reports that a file was read, so that the stage runs again when it has changed:
+    /// its path as the pipeline names it, and the BLAKE3 digest of its content, 32 bytes, or null:
+    /// then the program reads the file itself.
     pub reads: Option<unsafe extern "C" fn(ctx: *mut c_void, path: Text, digest: *const u8)>,
-    /// Since 1.2. Tells what was decided, for a user who wants to know; it also stands in the
-    /// report.
+    /// Since 1.2. Reports a decision, shown with `--verbose`; it is also in the report.
     pub note: Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)>,
 }
 
@@ -299,7 +299,7 @@ pub struct StageTable {
     pub run: Option<unsafe extern "C" fn(stage: *const c_void, host: *const Host, call: *const Call) -> i32>,
     /// Frees it.
     pub destroy: Option<unsafe extern "C" fn(stage: *mut c_void)>,
-    /// Since 1.1, may be null. Checks a RON text as the value of a parameter; tells the byte at
+    /// Since 1.1, may be null. Checks a RON text as the value of a parameter; gives the byte at
     /// fault, or -1, through `offset`.
     pub check:
         Option<unsafe extern "C" fn(param: usize, text: Text, host: *const Host, offset: *mut i64) -> i32>,
@@ -347,7 +347,7 @@ pub struct Sink {
     pub grow: Option<unsafe extern "C" fn(ctx: *mut c_void, count: usize) -> *mut c_void>,
 }
 
-/// A list of points and triangles: three coordinates a point, metres; three indices a triangle.
+/// A list of points and triangles: three coordinates per point, metres; three indices per triangle.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Cloth {
@@ -382,7 +382,7 @@ pub struct ColliderCard {
 /// A collision scheme, called in the solvers' inner loops, from any thread and from several at
 /// once.
 ///
-/// The functions give back `OK`, or anything else where they failed; `why` then tells the reason.
+/// The functions give back `OK`, or anything else where they failed; `why` then gives the reason.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ColliderTable {

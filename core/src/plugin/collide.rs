@@ -1,5 +1,5 @@
-//! Colliders across the border, both ways: a collider of this side lent as a table of functions,
-//! and a table of the other side behind [`Collide`].
+//! Colliders across the plugin ABI, both ways: a collider of this side lent as a table of
+//! functions, and a table of the other side behind [`Collide`].
 //!
 //! Positions and triangles cross as they lie in memory, results are written straight into the
 //! asker's list; a call costs one indirect jump more than a collider that is linked in, and one
@@ -166,7 +166,7 @@ pub struct ForeignCollider {
     _library: Option<Arc<dyn Send + Sync>>,
 }
 
-// Its functions may be called from any thread, by the rules of the border.
+// Its functions may be called from any thread, by the rules of the plugin ABI.
 unsafe impl Send for ForeignCollider {}
 unsafe impl Sync for ForeignCollider {}
 
@@ -190,7 +190,7 @@ impl Drop for ForeignCollider {
 /// Errors: a function or a setting that cannot be; the collider is left as it is then.
 ///
 /// # Safety
-/// The collider obeys the rules of the border.
+/// The collider obeys the rules of the plugin ABI.
 pub unsafe fn take(
     collider: *const abi::Collider,
     owner: &'static str,
@@ -210,7 +210,7 @@ pub unsafe fn take(
     let read_card = table.card.filter(|_| whole).ok_or("the collider lacks a function")?;
     let mut card = abi::ColliderCard::default();
     if unsafe { read_card(collider.this, &mut card) } != abi::OK {
-        return Err("the collider does not tell its settings".into());
+        return Err("the collider does not give its settings".into());
     }
     let signature = unsafe { text(collider.signature)? }.to_owned();
     let card = ColliderCard {

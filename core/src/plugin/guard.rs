@@ -1,4 +1,4 @@
-//! A panic must not cross the border: it ends here, as a status and a message.
+//! A panic must not cross the plugin ABI: it ends here, as a status and a message.
 
 use super::abi;
 use crate::panics;

@@ -1,11 +1,11 @@
-//! Where the program is inside a plugin: which one, for whoever must say so from outside.
+//! Records which plugin the program is inside, so that code outside of the call can name it.
 //!
 //! Two have to. A plugin that calls `exit` ends the program from within, and the system's exit code
 //! is that of the plugin: [`name_who_exits`] has the C library call back while a program ends, so
 //! that a plugin that ends it is named. And a program that is asked to stop says what did not.
 //!
 //! Every call into a plugin notes itself for its thread, which costs two stores; calls that may be
-//! long note themselves for all threads too. Limits: `_exit`, `abort` and a fault of memory pass no
+//! long note themselves for all threads too. Limits: `_exit`, `abort` and a memory fault call no
 //! handler and are not caught.
 
 use std::cell::Cell;
@@ -64,7 +64,7 @@ pub fn under_way() -> Vec<String> {
     LONG.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|(_, words)| words.clone()).collect()
 }
 
-/// Says what a program is told when a plugin ends it, and the exit code that it is to have.
+/// Prints which plugin ends the program, and returns the exit code of the program.
 pub type LastWords = fn(&str) -> c_int;
 
 static LAST_WORDS: OnceLock<LastWords> = OnceLock::new();
@@ -83,7 +83,7 @@ unsafe extern "C" {
 /// For a program that ends by returning from `main` or by [`end`] alone.
 pub fn name_who_exits(last_words: LastWords) {
     if LAST_WORDS.set(last_words).is_ok() {
-        // A C library that takes no more handlers leaves the program as it was.
+        // If the C library accepts no more handlers, nothing changes.
         let _ = unsafe { atexit(at_exit) };
         #[cfg(target_os = "linux")]
         let _ = unsafe { at_quick_exit(at_exit) };

@@ -1,5 +1,5 @@
-//! Pictures that cross the border without a copy: they stay where they were made, and whoever made
-//! them is told when the other side needs them no more.
+//! Pictures that pass between program and plugin without a copy: they stay in the memory of their
+//! maker, which is notified when the other side no longer needs them.
 
 use super::abi;
 use crate::artifact::store::{KeptBytes, Lend};
@@ -10,14 +10,14 @@ use std::sync::Arc;
 
 type Keeper = Arc<dyn Any + Send + Sync>;
 
-/// The owners of a record's lists, in C's form; boxed, since they are pointed at while the list
-/// grows.
+/// The owners of a record's lists, in C's form; boxed, so that pointers to them stay valid while
+/// the list grows.
 #[derive(Debug, Default)]
 #[allow(clippy::vec_box)]
 pub struct ListOwners(Vec<Box<abi::Owner>>);
 
 impl ListOwners {
-    /// Where the owner lies; good for as long as both live.
+    /// A pointer to the owner, valid while `self` and `keeper` live.
     pub fn lend(&mut self, keeper: &Keeper) -> *const abi::Owner {
         let ctx = std::ptr::from_ref(keeper).cast_mut().cast();
         self.0.push(Box::new(abi::Owner { ctx, retain: Some(retain), release: Some(release) }));
@@ -46,7 +46,7 @@ enum ListKeeper {
     Block(Keeper),
 }
 
-// Its functions may be called from any thread, by the rules of the border.
+// Its functions may be called from any thread, by the rules of the plugin ABI.
 unsafe impl Send for Lending {}
 unsafe impl Sync for Lending {}
 
@@ -75,7 +75,7 @@ impl Lending {
     /// The owner that the other side names, if it names one.
     ///
     /// # Safety
-    /// The owner is there for as long as the result, or any copy of it, is asked.
+    /// The owner lives as long as the result and every copy of it are used.
     pub unsafe fn of(owner: *const abi::Owner) -> Option<Self> {
         let owner = unsafe { owner.as_ref() }?;
         Some(Lending(ListKeeper::Foreign(*owner)))

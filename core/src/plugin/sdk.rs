@@ -1,6 +1,6 @@
 //! The plugin's side: what the macro [`plugin!`](crate::plugin) puts behind a crate's stages.
 //!
-//! A stage written with `#[stage]` knows nothing of the border: its artifacts are made from the
+//! A stage written with `#[stage]` knows nothing of the plugin ABI: its artifacts are made from the
 //! records that it is given, its context asks the program, and what it returns is lent as records.
 
 use super::abi::{self, Text};
@@ -21,7 +21,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
-/// A crate's stage tables, made when they are first asked for.
+/// A crate's stage tables, made when they are first requested.
 #[derive(Debug, Default)]
 pub struct Tables(OnceLock<Vec<u64>>);
 
@@ -133,7 +133,7 @@ unsafe extern "C" fn run<S: StageType>(
         let (stage, host, call) = unsafe { (&*stage.cast::<S>(), *host, &*call) };
         let remote = Arc::new(Remote(RwLock::new(Some(host))));
         let outcome = run_stage(stage, call, &remote);
-        // What the stage may have kept of its context asks nobody any more.
+        // The stage may have kept its context: it must not call the host any more.
         *remote.0.write().unwrap_or_else(PoisonError::into_inner) = None;
         give_all(&host, outcome?)
     })
@@ -168,7 +168,7 @@ unsafe extern "C" fn check<S: StageType>(
     abi::FAILED
 }
 
-/// The inside of an entry point: what it says or panics is told to the program.
+/// Runs the body of an entry point, and passes its error or panic to the program.
 fn entry(host: *const abi::Host, work: impl FnOnce() -> Result<(), StageError>) -> i32 {
     let failed = |e: &StageError| {
         tell(host, e.code.as_str(), &e.message, e.hint.as_deref().unwrap_or(""), e.param.unwrap_or(""));
@@ -227,7 +227,7 @@ fn on_threads<T: Send>(_: u32, work: impl FnOnce() -> T + Send) -> T {
 fn on_threads<T: Send>(threads: u32, work: impl FnOnce() -> T + Send) -> T {
     static POOLS: Mutex<BTreeMap<u32, Arc<rayon::ThreadPool>>> = Mutex::new(BTreeMap::new());
     static COMMON: std::sync::Once = std::sync::Once::new();
-    // Colliders are asked outside of any run: their loops fall to the library's common pool.
+    // Colliders are called outside of any run: their loops run in the library's common pool.
     COMMON.call_once(|| {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();
     });
@@ -307,7 +307,7 @@ fn give(host: &abi::Host, port: u32, name: &str, artifact: &dyn Artifact) -> Res
     }
 }
 
-/// The program, asked over the border until the call is over.
+/// The program, asked through the plugin ABI until the call is over.
 struct Remote(RwLock<Option<abi::Host>>);
 
 // The program's functions may be called from any thread.

@@ -1,5 +1,5 @@
-//! Records across the border: lent as they lie in memory, and read with every pointer checked as
-//! far as a pointer can be.
+//! Records across the plugin ABI: lent as they lie in memory, and read with every pointer checked
+//! as far as a pointer can be.
 
 use super::abi;
 use super::lending::{Lending, ListOwners};
@@ -23,7 +23,7 @@ pub struct Lent<'a> {
 /// The views of one record and of all records within.
 #[derive(Debug)]
 struct RecordViews {
-    /// Pointed at from outside; boxed, so that it stays where it is.
+    /// Other code holds a pointer to it; boxed, so that its address stays the same.
     view: Box<abi::Record>,
     _fields: Vec<abi::Field>,
     _parts: Vec<NestedViews>,
@@ -43,7 +43,7 @@ impl<'a> Lent<'a> {
         Lent { views: RecordViews::of(&record), _record: record }
     }
 
-    /// Where it lies.
+    /// A pointer to the record for C, valid while `self` lives.
     pub fn as_ptr(&self) -> *const abi::Record {
         &*self.views.view
     }

@@ -1,6 +1,6 @@
 //! Parameters that follow from where a stage stands in a pipeline.
 
-/// Values of parameters that no one wrote, by a stage's place.
+/// Values of parameters that the file leaves out, by a stage's place.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ByPlace {
     /// The index of an earlier stage of the same name, whose parameters it takes.

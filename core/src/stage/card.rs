@@ -67,9 +67,9 @@ pub struct InPort {
     pub arity: Arity,
     /// True where the stage can do without.
     pub optional: bool,
-    /// True where it wants the first made of its kind (the photo as read), not the latest.
+    /// True where it takes the first made of its kind (the photo as read), not the latest.
     pub original: bool,
-    /// True where it wants what was sewn: of a garment that flatteners have laid flat, the one that
+    /// True where it takes what was sewn: of a garment that flatteners have laid flat, the one that
     /// they were given.
     pub sewn: bool,
 }

@@ -35,8 +35,8 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
     /// Its parameters as RON: `(bias: 3.0)`.
     fn params(&self) -> String;
 
-    /// How much it makes of so much, all ports together; none where the rules of its role tell (see
-    /// [`crate::cost`]).
+    /// The size of its outputs for a size of its inputs, all ports together; none where the rules
+    /// of its role estimate it (see [`crate::cost`]).
     fn sizes(&self, _given: &Size, _cx: &Context) -> Option<Size> {
         None
     }
@@ -48,22 +48,23 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
 
     /// Values of parameters that follow from where stage `index` stands among the pipeline's
     /// stages, such as whether the garment has been draped before. The loader sets those that the
-    /// file leaves out, before anything else asks the stage; [`Stage::decisions`] tells them.
+    /// file leaves out, before it calls anything else of the stage; [`Stage::decisions`] reports
+    /// them.
     fn by_place(&self, _nodes: &[Node], _index: usize) -> ByPlace {
         ByPlace::default()
     }
 
-    /// What is wrong with its parameters and files, as far as it can be told before anything runs:
+    /// What is wrong with its parameters and files, as far as can be known before anything runs:
     /// all of it, each at its own parameter and element ([`StageError::at`],
     /// [`StageError::within`]). It is asked before every run and by `toile validate`, so it must be
-    /// quick: it looks at files, and computes nothing. What it finds, the run would find as well.
+    /// quick: it looks at files, and computes nothing. The run would find the same faults.
     fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         Vec::new()
     }
 
-    /// What the user should look at before anything runs, such as a name of no edge of a file, each
-    /// at its own parameter. It is asked after [`Stage::faults`] found nothing, and must be as
-    /// quick.
+    /// What the user should look at before anything runs, such as a name that no edge of a file
+    /// has, each at its own parameter. It is called after [`Stage::faults`] found nothing, and must
+    /// be as quick.
     fn warnings(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         Vec::new()
     }

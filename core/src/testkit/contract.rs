@@ -32,7 +32,7 @@ pub struct Kept {
     pub answered: usize,
 }
 
-/// True where the kit can check that contract for a card: what its ports take, the suite holds.
+/// True where the kit can check that contract for a card: the suite has inputs for all its ports.
 pub fn is_checked(card: &Card, contract: Contract) -> bool {
     let known = card.inputs.iter().filter(|p| !p.optional).all(|p| is_known(p.kind));
     let kinds = |k: Kind| {

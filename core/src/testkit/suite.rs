@@ -152,11 +152,11 @@ fn scene_value(scene: &ExampleScene, port: &InPort) -> Option<PortValue> {
 }
 
 type MakeExample = fn() -> Arc<dyn Artifact>;
-/// A kind with an artifact that is made where it is first asked for.
+/// A kind with an artifact that is made where it is first requested.
 type Own = (Kind, LazyLock<Arc<dyn Artifact>, MakeExample>);
 
-/// What stands on ports that no scene fills, a kind each. They are made once a process: the
-/// contracts of all cards ask for them some thousand times.
+/// Artifacts for ports that no scene fills, one per kind. They are made once per process: the
+/// contracts of all cards use them some thousand times.
 fn own() -> &'static [Own] {
     static OWN: LazyLock<Vec<Own>> = LazyLock::new(|| {
         let all: [(Kind, MakeExample); 14] = [

@@ -7,7 +7,7 @@ use crate::garment::{NamedOutline, PlanePoint, distance};
 
 /// Cell size, mm: smaller cells hold fewer segments but there are more of them.
 const CELL: f64 = 10.0;
-/// How far beyond the outline's box distances are asked for, mm.
+/// How far beyond the outline's box distances are requested, mm.
 const MARGIN: f64 = 120.0;
 
 /// The answer to a query.
@@ -71,7 +71,7 @@ impl<'a> NearField<'a> {
         (0..reach.len()).filter(|&i| reach[i] <= limit).map(|i| i as u32).collect()
     }
 
-    /// A horizontal line at height `y`, along which points are asked for.
+    /// A horizontal line at height `y`, along which points are requested.
     pub(crate) fn row(&self, y: f64) -> OutlineRow<'_> {
         let points = &self.outline.points;
         let mut crossings: Vec<f64> = points

@@ -121,7 +121,7 @@ impl DraftPanel {
     fn mirrored(&self, name: &str) -> Self {
         let n = self.corners.len();
         let corners = (0..n).map(|k| self.corners[(n - k) % n]).map(|[x, y]| [-x, y]).collect();
-        // Run through backwards in a mirror, a curve bends to the same side.
+        // A mirrored curve that is run through backwards bends to the same side.
         let turned = |e: &DraftEdge| e.reversed(1.0);
         let edges = self.edges.iter().rev().map(turned).collect();
         let [x, y, z] = self.at;

@@ -1,7 +1,7 @@
 //! The bilateral filter that makes the guide.
 //!
 //! Each pixel is the mean of those within [`RADIUS`], weighted by how near they are in place and in
-//! colour (Tomasi & Manduchi 1998); the colour's fall-off is three times the grain. 25 weights a
+//! colour (Tomasi & Manduchi 1998); the colour's fall-off is three times the grain. 25 weights per
 //! pixel, from a table.
 
 use image::RgbImage;
@@ -16,7 +16,7 @@ const PLACE: f64 = 1.5;
 const COLOUR: f64 = 3.0;
 /// Greatest squared distance of two colours.
 const FARTHEST: usize = 3 * 255 * 255;
-/// Squared distances share an entry of the table by this many.
+/// This many consecutive squared distances share one entry of the table.
 const STEP: usize = 16;
 
 /// The smoothed rows of a photo, channels side by side.

@@ -2,12 +2,12 @@
 //!
 //! Method: of the logarithm of the light two means are taken at each pixel over cloth of about the
 //! same level: a near one, as wide as the finest wrinkle, and a far one, wider than the widest.
-//! Cloth of one colour has the same far mean everywhere, once it is asked at its own answer a few
-//! times (mean shift, Comaniciu & Meer 2002), so near minus far is the shading, and is divided out
-//! of the linear colours. Both means are bilateral filters (Tomasi & Manduchi 1998), made on a
-//! coarse grid of place and level (Chen, Paris & Durand 2007). Cost: a few operations a pixel, and
-//! the grid, some hundred thousand cells. Limits: one level is one colour: a soft gradient of the
-//! dye is taken for shading.
+//! Cloth of one colour has the same far mean everywhere, once it is evaluated at its own result a
+//! few times (mean shift, Comaniciu & Meer 2002), so near minus far is the shading, and is divided
+//! out of the linear colours. Both means are bilateral filters (Tomasi & Manduchi 1998), made on a
+//! coarse grid of place and level (Chen, Paris & Durand 2007). Cost: a few operations per pixel,
+//! and the grid, some hundred thousand cells. Limits: one level is one colour: a soft gradient of
+//! the dye is taken for shading.
 
 use image::RgbImage;
 use rayon::prelude::*;
@@ -18,8 +18,8 @@ const LEVELS: f64 = 4.0;
 /// Half the width of the far mean's box in level, cells: three passes fall off with six tenths of
 /// `contrast`.
 const FAR_LEVELS: usize = 2;
-/// How often the far mean is asked again at its own answer (mean shift): each leaves a quarter of
-/// the shading.
+/// How often the far mean is evaluated again at its own result (mean shift): each time leaves a
+/// quarter of the shading.
 const SHIFTS: usize = 3;
 /// The darkest light that is told from black.
 const BLACK: f64 = 1.0 / 2048.0;

@@ -65,7 +65,7 @@ impl Ironed {
         body: Option<&Body>,
         cx: &Context,
     ) -> Result<Model, StageError> {
-        garment.check().map_err(|e| StageError::invalid(format!("the garment cannot be dressed: {e}")))?;
+        garment.check().map_err(|e| StageError::invalid(format!("the garment cannot be textured: {e}")))?;
         if garment.triangles.is_empty() {
             return Err(StageError::invalid("the garment is empty: it has no triangles"));
         }

@@ -15,7 +15,7 @@ use toile_core::prelude::*;
 
 /// Rounds of moving and adding; later ones change little.
 const ROUNDS: usize = 6;
-/// Triangles below this angle (degrees) ask for a new vertex.
+/// Triangles with an angle below this (degrees) get a new vertex.
 const POOR: f64 = 28.0;
 /// A new vertex keeps this share of the shortest side around it from every vertex.
 const SPACING: f64 = 0.7;

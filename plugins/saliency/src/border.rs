@@ -6,8 +6,8 @@
 //! read off at the photo's own colours (He, Sun, Fast guided filter, 2015). So the border lies
 //! where the photo has an edge, and stays where it was where there is none.
 //!
-//! Cost: 35 ms for the lines; 10 ns a pixel of the photo. Limits: an edge of the garment within the
-//! window, such as that of a print beside the border, draws the border too.
+//! Cost: 35 ms for the lines; 10 ns per pixel of the photo. Limits: an edge of the garment within
+//! the window, such as that of a print beside the border, draws the border too.
 
 use crate::network::{Guide, Map, SIDE};
 use image::{GrayImage, Luma};

@@ -9,13 +9,14 @@ pub enum Unfit {
     /// Its bytes are no ONNX file.
     #[error("it is no ONNX file")]
     NoOnnx,
-    /// It begins as an ONNX file and does not go on as one.
+    /// It begins as an ONNX file but does not parse to its end.
     #[error("it is damaged or cut short")]
     Damaged,
-    /// It holds what this stage does not know, such as an operator that the network has not.
+    /// It holds what this stage does not know, such as an operator that the expected network does
+    /// not have.
     #[error("it cannot be read: {0}")]
     Unreadable(String),
-    /// It takes something else than one photo.
+    /// Its input is not one photo.
     #[error("it takes {found}, where {wanted} is needed")]
     Takes {
         /// What it takes.
@@ -23,7 +24,7 @@ pub enum Unfit {
         /// What it should take.
         wanted: String,
     },
-    /// It gives something else than one map.
+    /// Its output is not one map.
     #[error("it gives {found}, where {wanted} is needed")]
     Gives {
         /// What it gives.
@@ -31,7 +32,7 @@ pub enum Unfit {
         /// What it should give.
         wanted: String,
     },
-    /// It broke off.
+    /// It failed while it ran.
     #[error("it cannot be run: {0}")]
     Broken(String),
     /// Its map holds values that are not finite.

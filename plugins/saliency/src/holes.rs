@@ -1,4 +1,4 @@
-//! Holes of a mask, filled: garments are laid down whole.
+//! Fills the holes of a mask, because garments have none.
 //!
 //! The ground is what is reached from the frame over pixels off the mask, up, down and sideways
 //! (flood fill on a stack). Cost: one look at every pixel. Limits: ground that a sleeve closes off

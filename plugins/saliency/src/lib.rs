@@ -2,7 +2,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `weights` | the file of the network: named, read, and held against its digest |
+//! | `weights` | the file of the network: named, read, and compared with its digest |
 //! | `network` | the network, from the file's bytes to a map of the photo |
 //! | `border` | the map at the photo's size, its border drawn to the photo's edges |
 //! | `holes` | holes of the mask, filled |
@@ -27,9 +27,9 @@ use toile_core::prelude::*;
 /// One more voice for `Auto()`, which takes the mask of a binariser before it. The network knows
 /// objects, not garments: prints, cloth of two colours and patterned grounds mislead it less than
 /// they mislead methods of colour, but it may leave out a sleeve, and takes a hanger in. Its
-/// weights are a file of 4.6 MB that is not part of the program; plugins/saliency/README.md tells
+/// weights are a file of 4.6 MB that is not part of the program; plugins/saliency/README.md says
 /// where it comes from. Holes are filled; transparent pixels are ground. A photo in which it sees
-/// nothing gives an empty mask and a warning. Takes about 0.7 s a photo.
+/// nothing gives an empty mask and a warning. Takes about 0.7 s per photo.
 #[stage(
     role = Binariser,
     source = "Qin, Zhang, Huang, Dehghan, Zaiane, Jagersand 2020; He, Sun 2015",

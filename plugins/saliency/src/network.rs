@@ -11,8 +11,8 @@
 //!
 //! Cost: 0.5 to 0.7 s and 80 MB for U2-Net-p with AVX-512; a second thread saves a twentieth.
 //! Limits: whatever is no object of its own to the eye (a dark sleeve on dark wood) is left out. A
-//! file may ask for any amount of memory: its digest is held against the pipeline's before it comes
-//! here.
+//! file may ask for any amount of memory: its digest is compared with the pipeline's before it
+//! comes here.
 
 use crate::fault::Unfit;
 use image::RgbImage;

@@ -21,7 +21,7 @@ pub(crate) fn named(file: &str) -> Result<(), StageError> {
             ErrorCode::InvalidParameter,
             "no file is named to read the network from",
         )
-        .hint("write `weights: \"u2netp.onnx\"`; plugins/saliency/README.md tells where to get the file")
+        .hint("write `weights: \"u2netp.onnx\"`; plugins/saliency/README.md says where to get the file")
         .at("weights")),
         false => Ok(()),
     }
@@ -47,7 +47,7 @@ pub(crate) fn read(file: &str, digest: &str, cx: &Context) -> Result<Vec<u8>, St
 /// A file that cannot be read, with where it may come from.
 fn missing(e: StageError) -> StageError {
     let paths = e.hint.clone().unwrap_or_default();
-    e.hint(format!("{paths}; plugins/saliency/README.md tells where to get the file")).at("weights")
+    e.hint(format!("{paths}; plugins/saliency/README.md says where to get the file")).at("weights")
 }
 
 /// Holds the file's digest against the one that is given.
@@ -60,7 +60,7 @@ fn is_meant(file: &str, found: &str, given: &str) -> Result<(), StageError> {
         return wrong(format!("no digest is given for \"{file}\""), write);
     }
     if given.len() != DIGITS || !given.chars().all(|c| c.is_ascii_hexdigit()) {
-        return wrong(format!("`digest` wants {DIGITS} hexadecimal digits, found \"{given}\""), write);
+        return wrong(format!("`digest` must be {DIGITS} hexadecimal digits, found \"{given}\""), write);
     }
     match given.eq_ignore_ascii_case(found) {
         true => Ok(()),

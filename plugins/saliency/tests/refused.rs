@@ -18,7 +18,7 @@ fn no_file_is_named() {
     assert_eq!(message, "no file is named to read the network from");
     assert_eq!(
         hint,
-        "write `weights: \"u2netp.onnx\"`; plugins/saliency/README.md tells where to get the file"
+        "write `weights: \"u2netp.onnx\"`; plugins/saliency/README.md says where to get the file"
     );
     assert_eq!(param, "weights");
 }
@@ -32,7 +32,7 @@ fn the_file_is_not_there() {
     assert_eq!(message, "cannot read \"gone.onnx\": no such file");
     assert_eq!(
         hint,
-        "paths are relative to the pipeline file; plugins/saliency/README.md tells where to get the file"
+        "paths are relative to the pipeline file; plugins/saliency/README.md says where to get the file"
     );
     assert_eq!(param, "weights");
 }
@@ -58,7 +58,7 @@ fn no_digest_is_given() {
 fn the_digest_is_none() {
     let (dir, stage) = given(&tiny().file());
     let (_, message, _, param) = refusal(&Saliency { digest: "8e83ca70".into(), ..stage }, dir.path());
-    assert_eq!(message, "`digest` wants 64 hexadecimal digits, found \"8e83ca70\"");
+    assert_eq!(message, "`digest` must be 64 hexadecimal digits, found \"8e83ca70\"");
     assert_eq!(param, "digest");
 }
 

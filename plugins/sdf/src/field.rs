@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use toile_core::artifact::{Body, Point3, Vector3};
 use toile_core::{Context, Length, StageError};
 
-/// The largest grid: 17 bytes a node while it is made, 8 afterwards.
+/// The largest grid: 17 bytes per node while it is made, 8 afterwards.
 const MAX_NODES: f64 = 4e7;
 /// Cells around the skin with exact distances.
 const BAND: f64 = 2.0;
@@ -25,7 +25,7 @@ const BAND: f64 = 2.0;
 const ROOM: (f64, f64) = (3.0, 0.05);
 /// Slices whose bands are made before the stop flag is looked at.
 const SLICES: usize = 4;
-/// Cells from the skin within which the closest point is asked for.
+/// Cells from the skin within which the closest point is requested.
 const NEAR: f64 = 1.5;
 /// No triangle yet.
 const NONE: u32 = u32::MAX;

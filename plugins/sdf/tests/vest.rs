@@ -37,7 +37,7 @@ fn the_vest_drapes_on_a_field_as_on_a_hierarchy() {
     let dir = tempfile::tempdir().unwrap();
     let out = kept.as_deref().unwrap_or(dir.path());
     std::fs::create_dir_all(out).unwrap();
-    // The field is asked for vertices alone: between them a triangle of 16 mm cuts a millimetre
+    // The field is evaluated at vertices only: between them a triangle of 16 mm cuts a millimetre
     // into a rounded shoulder.
     let metrics = drape("SdfCollider(cell: \"8 mm\", thickness: \"2.5 mm\", friction: 0.3)", out);
     let metrics: String = metrics.split_whitespace().collect();

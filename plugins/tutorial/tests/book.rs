@@ -1,5 +1,5 @@
-//! docs/guide/writing-a-stage.md tells this crate: every block that names a file stands in it, and
-//! together they are the whole of it.
+//! docs/guide/writing-a-stage.md explains this crate: every block that names a file is part of that
+//! file, and the blocks together are all of it.
 #![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeMap;

@@ -189,8 +189,8 @@ impl BodyObj {
 }
 
 /// The body of a mesh that stands upright, y up, metres: where it stands, faced outwards, with the
-/// landmarks and girths that its shape tells; without any where they cannot be found, such as with
-/// arms that lie on the trunk, which the second value names.
+/// landmarks and girths that follow from its shape; without any where they cannot be found, such as
+/// with arms that lie on the trunk, which the second value names.
 ///
 /// # Errors
 /// The mesh is not closed, or its triangles are not turned alike.

@@ -2,7 +2,7 @@
 //! factors.
 //!
 //! Mean proportions of standing adults after the tables of Gordon and others (1989), children after
-//! Snyder and others (1977), simplified. Girths follow the measures that are asked for; a form
+//! Snyder and others (1977), simplified. Girths follow the measures that are requested; a form
 //! gives their share in width and depth.
 
 /// A row of the trunk: level, half width, depth in front and behind the axis, metres on the adult

@@ -19,8 +19,8 @@ const GROWING: [f64; 2] = [1.35, 1.55];
 const ARM: [f64; 2] = [0.366, 0.384];
 
 /// Height, bust, waist and hip of women, men and children where nothing is given, centimetres.
-/// Girths of a child follow from its height where that is given; those of the grown do not depend
-/// on it.
+/// Girths of a child follow from its height where that is given; those of adults do not depend on
+/// it.
 const USUAL: [SizeRow; 3] =
     [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
 
@@ -147,8 +147,7 @@ impl Mannequin {
     }
 }
 
-/// How far a figure that is not stated is grown up at a height, metres: 0 for a child, 1 for a
-/// grown person.
+/// Maturity of a figure that is not stated, by its height, metres: 0 for a child, 1 for an adult.
 fn grown(height: f64) -> f64 {
     let [child, grown] = GROWING;
     ((height - child) / (grown - child)).clamp(0.0, 1.0)
@@ -204,7 +203,7 @@ fn check(size: &FigureSize) -> Result<(), StageError> {
         ("neck", size.neck, "a bust", size.bust, (0.30, 0.52)),
         ("arm", size.arm, "a height", h, (0.25, 0.40)),
         ("inseam", size.inseam, "a height", h, (0.36, 0.52)),
-        // From radians, 30 degrees come back with the last digits of a rounding.
+        // 30 degrees converted from radians have rounding in their last digits.
         ("arm_angle", (size.arm_angle.to_degrees() * 1e9).round() / 1e9, "", 1.0, (30.0, 75.0)),
     ];
     rules.into_iter().try_for_each(|(name, value, to, base, (lo, hi))| {

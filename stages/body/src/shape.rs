@@ -69,7 +69,7 @@ pub(crate) fn chin(height: f64) -> f64 {
     height - head_height(height)
 }
 
-/// What is aimed at so that the skin has the measures that are asked for: factors of the adult's
+/// What is aimed at so that the skin has the measures that are requested: factors of the adult's
 /// sections and lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Aims {

@@ -14,7 +14,7 @@ use toile_cloth::statics::drive::solve::{Collider, StaticEquilibrium};
 /// Newton's steps for each state.
 const STEPS: usize = 2;
 
-/// The fabric of a state: all values swing by half, each at its own pace.
+/// The fabric of a state: all values oscillate by half, each with its own period.
 fn swung(cloth: &Fabric, t: f64) -> Fabric {
     let by = |pace: f64| 1.0 + 0.5 * (pace * t).sin();
     let stretch = cloth.stretch() * by(1.0);

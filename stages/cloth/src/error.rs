@@ -79,7 +79,7 @@ pub enum ClothError {
         what: &'static str,
         /// Which of them.
         index: usize,
-        /// The vertex asked for.
+        /// The requested vertex.
         vertex: usize,
         /// How many there are.
         count: usize,
@@ -87,7 +87,7 @@ pub enum ClothError {
     /// An explicit step that would blow up.
     #[error("time step {dt:.3e} s is unstable: the limit 2/omega_max is {limit:.3e} s")]
     TimeStepUnstable {
-        /// The step asked for.
+        /// The requested step.
         dt: f64,
         /// The largest stable step.
         limit: f64,

@@ -4,8 +4,8 @@ use crate::error::ClothError;
 use std::fmt;
 use std::sync::Arc;
 
-/// Tells whether a caller wants a solver to stop. Solvers ask it between the parts of a step, so
-/// that a long step ends soon. The default never stops.
+/// Says whether the caller has asked a solver to stop. Solvers check it between the parts of a
+/// step, so that a long step ends soon. The default never stops.
 #[derive(Clone, Default)]
 pub struct Stopper(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
 

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// A fault of a mesh, or of what was asked for, that the flatteners cannot work with.
+/// A fault of a mesh, or of what was requested, that the flatteners cannot work with.
 ///
 /// Numbers of vertices and triangles are those of the caller's lists, from 0.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -4,7 +4,7 @@
 use crate::linear::{Graph, elimination_order};
 use crate::surface::PieceSurface;
 
-/// Made once a piece, used by all its solvers.
+/// Made once per piece, used by all its solvers.
 #[derive(Debug, Clone)]
 pub(crate) struct PieceSystem {
     triangles: Vec<[u32; 3]>,

@@ -40,7 +40,7 @@ pub struct ClothTree<V = Aabb> {
     volume: std::marker::PhantomData<V>,
 }
 
-/// Corners and sides (k to k + 1) that a triangle answers for.
+/// Corners and sides (k to k + 1) that are tested with this triangle, so that each is tested once.
 type Owned = ([bool; 3], [bool; 3]);
 
 /// What of a tree looks for others.

@@ -1,4 +1,4 @@
-//! What hangs together: connected components by union-find (Galler, Fischer 1964).
+//! Connected components by union-find (Galler, Fischer 1964).
 //!
 //! Cost: nearly linear in the pairs.
 
@@ -35,7 +35,7 @@ fn root(parent: &mut [u32], mut i: u32) -> u32 {
     i
 }
 
-/// The sides of triangles that connect their corners: two a triangle.
+/// The sides of triangles that connect their corners: two per triangle.
 pub fn links(triangles: &[[u32; 3]]) -> impl Iterator<Item = [u32; 2]> + '_ {
     triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]])
 }

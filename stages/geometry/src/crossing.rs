@@ -18,7 +18,7 @@ const LEAF: usize = 2;
 /// An end nearer than this to a triangle's plane lies in it for [`pierces_clearly`], m.
 const FLAT: f64 = 1e-9;
 
-/// Triangles that one parallel task of [`between_meshes`] looks after.
+/// Triangles that one parallel task of [`between_meshes`] handles.
 const CHUNK: usize = 256;
 
 /// A mesh: vertices and triangles.
@@ -151,7 +151,8 @@ pub fn pierces_clearly(p: &Vec3, q: &Vec3, [a, b, c]: &Corners) -> bool {
     sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0)
 }
 
-/// Where the way from `p` to `q` passes through a triangle, its rim counted in; in doubles.
+/// Where the segment from `p` to `q` passes through a triangle, boundary included, in double
+/// precision.
 #[must_use]
 pub fn passing(p: &Vec3, q: &Vec3, [a, b, c]: &Corners) -> Option<Vec3> {
     let volume = |a: &Vec3, b: &Vec3, c: &Vec3, d: &Vec3| (b - a).cross(&(c - a)).dot(&(d - a));

@@ -1,11 +1,12 @@
 //! A coarse lattice of signed distances around the body.
 //!
-//! Distance changes by no more than one moves, so the distance at a cell's middle bounds that of
-//! every point in the cell: most vertices are known to be too far out without a look at the
-//! skin, and points deep inside get a bound to search within. The bounds are exact, never a guess.
+//! A distance changes by no more than the point moves, so the distance at a cell's middle bounds
+//! that of every point in the cell: most vertices are known to be too far out without a query of
+//! the skin, and points deep inside get a bound to search within. The bounds are exact, never a
+//! guess.
 //!
-//! Cells are filled where points ask for them, each once; a body is mostly larger than what cloth
-//! comes near. Cost: a closest-point query a cell that is asked for; all [`CELLS`] of them, some 50
+//! Cells are filled where points need them, each once; a body is mostly larger than what cloth
+//! comes near. Cost: a closest-point query a cell that is requested; all [`CELLS`] of them, some 50
 //! ms for a body of 20,000 triangles, where they are filled ahead. Half a megabyte. Outside the
 //! lattice the distance to its box is the bound.
 //!
@@ -33,7 +34,7 @@ pub struct DistanceLattice {
     origin: Vec3,
     cell: f64,
     counts: [usize; 3],
-    /// Bits of the distances at the cells' middles; [`UNKNOWN`] where nobody has asked.
+    /// Bits of the distances at the cells' middles; [`UNKNOWN`] where none has been computed.
     distances: Vec<AtomicU64>,
     slack: f64,
 }
@@ -57,7 +58,7 @@ impl DistanceLattice {
     /// bound.
     ///
     /// # Errors
-    /// That of `check`, which is asked once a layer.
+    /// That of `check`, which is asked once per layer.
     pub fn fill<E>(
         &self,
         check: impl Fn() -> Result<(), E>,
@@ -119,7 +120,7 @@ impl DistanceLattice {
     }
 
     /// The least and the greatest signed distance that `p` can have; `None` where it is no finite
-    /// number. `distance` fills the cell where nobody has asked for it yet.
+    /// number. `distance` computes the distance of a cell at its first use.
     pub fn bounds(&self, p: &Vec3, distance: impl Fn(&Vec3, f64) -> Option<f64>) -> Option<(f64, f64)> {
         if !p.iter().all(|x| x.is_finite()) {
             return None;

@@ -10,7 +10,7 @@
 //! - [`signed_distance`]: distance to a closed mesh, negative inside; [`lattice`] bounds it
 //!   cheaply.
 //! - [`sharp`], [`facets`]: sharp edges of a body, and where triangles pass through it.
-//! - [`components`]: what hangs together.
+//! - [`components`]: connected components.
 //! - [`obj`]: Wavefront OBJ.
 //! - [`shapes`]: simple meshes for tests.
 

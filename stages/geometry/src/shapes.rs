@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 /// Vertices and triangles.
 pub type ShapeMesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// The box from `low` to `high`, two triangles a face, facing outwards.
+/// The box from `low` to `high`, two triangles per face, facing outwards.
 #[must_use]
 pub fn block(low: [f64; 3], high: [f64; 3]) -> ShapeMesh {
     let corner =

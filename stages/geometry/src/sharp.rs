@@ -21,21 +21,21 @@ use crate::{Corners, Vec3};
 /// Features in a leaf of the tree.
 const LEAF: usize = 4;
 
-/// Cosine of the angle between the normals of two faces from which on their edge is sharp: 44
+/// Cosine of the least angle between the normals of two faces that makes their edge sharp: 44
 /// degrees, less than in a prism of eight sides and more than in all but some hundred edges of a
 /// mannequin.
 const SHARP_EDGE: f64 = 0.719;
 
-/// Cosine of the angle between a face and the mean of all about a corner from which on that is
+/// Cosine of the least angle between a face and the mean normal at a corner that makes the corner
 /// sharp: 45 degrees; a corner of a box has 55.
 const SHARP_CORNER: f64 = 0.707;
 
-/// Cosine of half the angle of a sharp edge, and a little less: a vertex of whose faces none stands
-/// farther from their mean has no sharp edge, for of two faces one stands from any direction at
-/// least half as far as they stand from each other.
+/// Slightly less than the cosine of half the angle of a sharp edge. If no face at a vertex is
+/// farther than this from the mean normal, the vertex has no sharp edge: of two faces, one is at
+/// least half their angle away from any direction.
 const BENDS: f64 = 0.9275;
 
-/// Cosine of the angle from which on an edge of a sharp corner counts: 1 degree.
+/// Cosine of the least angle at which an edge of a sharp corner counts: 1 degree.
 const BENT: f64 = 0.9998;
 
 /// Share of its distance by which a point may lie beyond a normal cone and still count as in it.
@@ -44,9 +44,9 @@ const LENIENT: f64 = 0.02;
 /// A sharp edge or corner.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharpFeature {
-    /// Whether it meets edges of the cloth, or, a corner, its triangles.
+    /// What it is tested against: an edge against edges of the cloth, a corner against triangles.
     pub kind: Kind,
-    /// Its two ends; of a corner the same place.
+    /// Its two ends; both are the same point for a corner.
     pub ends: [Vec3; 2],
     /// Unit directions from it into the surface: into the two faces, or along the edges of a
     /// corner.

@@ -13,7 +13,7 @@ use crate::tree::Bvh;
 use crate::volume::{Aabb, BoundingVolume};
 use crate::{Corners, Vec3};
 
-/// Triangles a leaf of the tree: below that, testing them all is cheaper than more volumes.
+/// Triangles per leaf of the tree: with fewer, testing them all is cheaper than more volumes.
 const LEAF: usize = 4;
 
 /// Distance below which the direction from surface to point is noise and the feature's own normal

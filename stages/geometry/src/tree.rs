@@ -2,7 +2,7 @@
 //!
 //! Built top-down by the surface-area heuristic on 12 bins along the longest axis (Wald 2007), in
 //! an order that depends on the input alone; O(n log n). Parts lie in depth-first order, so that a
-//! fit is one backward sweep. The tree holds no volumes: [`VolumeTree::fit`] gives one a part, so
+//! fit is one backward sweep. The tree holds no volumes: [`VolumeTree::fit`] gives one per part, so
 //! that one tree serves any volume, and cloth that moves. [`Bvh`] is a tree with the volumes of
 //! things that stand still.
 //!

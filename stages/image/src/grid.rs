@@ -5,12 +5,12 @@
 //! given. With steps of zero this is Laplace's equation.
 //!
 //! Method: conjugate gradients with the diagonal as preconditioner (Hestenes and Stiefel, 1952).
-//! Cost: ten operations a pixel and round. Limits: one thread; the rounds grow with the picture's
+//! Cost: ten operations per pixel and round. Limits: one thread; the rounds grow with the picture's
 //! longer side.
 
 use toile_core::prelude::*;
 
-/// How neighbours are joined: to the right and down, one entry a pixel; zero past the frame.
+/// How neighbours are joined: to the right and down, one entry per pixel; zero past the frame.
 pub struct Grid {
     /// Pixels across.
     pub width: usize,

@@ -72,7 +72,7 @@ pub enum ScaleError {
         /// Growth of the spacing from one end to the other, percent.
         percent: f64,
     },
-    /// The marks of a ruler have too few pixels to be told.
+    /// The marks of a ruler have too few pixels to be recognised.
     #[error(
         "the marks of the ruler at ({:.0}, {:.0}) are {apart:.1} px apart, {least:.0} are needed; go nearer or use a photo of more pixels",
         .place[0], .place[1]
@@ -121,7 +121,7 @@ pub enum ScaleError {
     /// A resolution that is out of range.
     #[error("a resolution of {px_per_metre} px per metre is out of range; give 10 to 100000, or none")]
     Resolution {
-        /// What was asked for.
+        /// What was requested.
         px_per_metre: f64,
     },
 }

@@ -28,7 +28,7 @@ pub fn find_with(photo: &RgbImage, object: KnownObject, options: &ScaleOptions) 
     }
 }
 
-/// Finds an object that is told by its marks.
+/// Finds an object that is recognised by its marks.
 fn marked(photo: &RgbImage, object: KnownObject, options: &ScaleOptions) -> Result<Found, ScaleError> {
     match object {
         KnownObject::Chessboard { square_um, corners } => {

@@ -3,7 +3,7 @@
 use crate::KnownObject;
 use nalgebra::{Matrix3, Point2, Vector2};
 
-/// What a found object tells about the ground.
+/// What a found object shows about the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ScaleKind {
     /// The ground's plane: lengths hold all over the photo, whatever the tilt.

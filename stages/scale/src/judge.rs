@@ -33,7 +33,7 @@ const OFF: f64 = 0.4;
 const OFF_SHARE: f64 = 0.003;
 /// The most unusual camera (sum of squares over standard deviations).
 const UNUSUAL: f64 = 8.0;
-/// The most cost of the pose of a card, and of a sheet, whose sides are longer and tell more.
+/// The most cost of the pose of a card, and of a sheet, whose longer sides say more.
 const COST: f64 = 4.0;
 const SHEET_COST: f64 = 1.6;
 /// Of the eight continuations of the sides beyond the corners, so many may show an edge.
@@ -247,7 +247,7 @@ fn continued(
 /// How the corners look.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum CornerLook {
-    /// There are too few pixels to tell.
+    /// There are too few pixels to decide.
     Small,
     /// The object has the ground's colour at its corners.
     Unseen,

@@ -58,11 +58,11 @@ impl KnownCamera {
 
 /// Focal length of a phone's main lens on 35 mm film, mm.
 const PHONE: f64 = 26.5;
-/// Those of phones' main lenses lie between these, mm.
+/// Focal lengths of phones' main lenses lie between these, mm.
 const PHONES: [f64; 2] = [22.0, 35.0];
 /// The most tilt of the ground where the focal length is known, degrees.
 pub(crate) const MOST_TILT: f64 = 60.0;
-/// And where it is not: beyond, a tilt makes up for a wrong proportion.
+/// The most tilt where it is not known, degrees: a greater tilt could fit a wrong proportion.
 const UNKNOWN_TILT: f64 = 35.0;
 /// Diagonal of 35 mm film, mm.
 const FILM: f64 = 43.267;

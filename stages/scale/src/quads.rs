@@ -33,7 +33,7 @@ pub(crate) fn area(corners: &[Point2<f64>; 4]) -> f64 {
 
 /// The nearest meetings of an end that are followed.
 const MEETINGS: usize = 12;
-/// Of each segment so many pairs of meetings are looked at.
+/// Number of pairs of meeting segments that are examined per segment.
 const PAIRS: usize = 9;
 /// The least share of a side on ridges.
 const ON_RIDGES: f64 = 0.5;
@@ -98,7 +98,8 @@ fn pairs<'a>(
     pairs
 }
 
-/// Depths, beyond some of the two sides each, at which a fourth side lies on ridges.
+/// Finds quadrilaterals whose fourth side lies on ridges: it is moved along the first two sides,
+/// from `from` to `to` pixels past `beyond`.
 fn fourth(
     ridges: &SlopeRidges,
     [first, second]: [&SegmentMeeting; 2],
@@ -230,8 +231,9 @@ fn meeting(one: &Segment, end: usize, two: &Segment, e: usize) -> Option<Segment
     Some(SegmentMeeting { at, away: -outward(v, e), reach, gap: gaps[0] + gaps[1] - 0.3 * l2.min(l1) })
 }
 
-/// How far a crossing lies from an end: outside of the segment by nine tenths of it, inside by a
-/// quarter.
+/// The distance of a crossing from an end, pixels. `None` where it lies outside of the segment by
+/// more than nine tenths of the length, or inside by more than a quarter of it, a few pixels added
+/// to both.
 fn gap(at: Point2<f64>, end: Point2<f64>, outward: Vector2<f64>, length: f64) -> Option<f64> {
     let t = outward.dot(&(at - end));
     let allowed = if t > 0.0 { 0.9 * length + 4.0 } else { 0.25 * length + 2.0 };

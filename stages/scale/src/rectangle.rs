@@ -21,7 +21,7 @@ use nalgebra::Point2;
 
 /// The longer side of the finer reduced copy is at most this, pixels.
 const FINE: usize = 1400;
-/// And of the coarser one.
+/// The longer side of the coarser reduced copy is at most this, pixels.
 const COARSE: usize = 600;
 /// Candidates that are measured, of each copy.
 const MEASURED: usize = 110;

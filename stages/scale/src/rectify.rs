@@ -5,8 +5,8 @@
 //! a copy of the photo that is halved until the picture's pixels are no larger than the copy's
 //! (Williams, Pyramidal parametrics, 1983).
 //!
-//! Cost: about 60 ns a pixel and core, bicubic. Limits: ground that is seen at less than a tenth of
-//! the densest resolution (towards the horizon) is left out, and lens distortion stays.
+//! Cost: about 60 ns per pixel and core, bicubic. Limits: ground that is seen at less than a tenth
+//! of the densest resolution (towards the horizon) is left out, and lens distortion stays.
 
 use crate::found::{Found, density, place};
 use crate::pose::through;
@@ -29,7 +29,7 @@ pub enum Sampling {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RectifyOptions {
     /// Pixels a metre, 10 to 100 000; `None` for those of the photo where it is densest. It is
-    /// never more than those, and less where the picture would be larger than 30 000 px a side or
+    /// never more than those, and less where the picture would be larger than 30 000 px per side or
     /// 200 megapixels.
     pub px_per_metre: Option<f64>,
     /// How colours between pixels are taken.
@@ -112,7 +112,7 @@ impl GroundFrame {
     }
 }
 
-/// Places over the photo, its frame among them, 65 a side.
+/// Places over the photo, its frame among them, 65 per side.
 fn grid(photo: &RgbImage) -> Vec<Point2<f64>> {
     let (w, h) = (f64::from(photo.width()), f64::from(photo.height()));
     let at = |n: i32, size: f64| size * f64::from(n) / 64.0 - 0.5;

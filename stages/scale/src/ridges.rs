@@ -5,7 +5,7 @@
 //! is on a ridge where the size is largest across the edge (Canny, 1986). An edge whose contrast
 //! changes sign along it stays one.
 //!
-//! Cost: about 40 ns a pixel.
+//! Cost: about 40 ns per pixel.
 
 use crate::pixels::{ReducedPhoto, Rgb};
 use nalgebra::Point2;

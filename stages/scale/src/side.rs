@@ -5,7 +5,7 @@
 //! lie on is found by votes over its two end offsets (Hough, 1962), then fitted by least squares
 //! with Tukey's weights (1974).
 //!
-//! Cost: about 0.1 ms a side of 100 profiles.
+//! Cost: about 0.1 ms per side of 100 profiles.
 
 use crate::pixels::{Rgb, colour};
 use image::RgbImage;
@@ -137,7 +137,7 @@ fn slopes(
 /// End offsets of the line that most peaks are near, steps.
 fn vote(peaks: &[Peak], look: &SideSampling, count: usize) -> Option<(f64, f64)> {
     let reach = 2 * look.reach as isize;
-    // A quarter of the profiles tells the line; the fit uses all of them.
+    // A quarter of the profiles suffices to find the line; the fit uses all of them.
     let every = (count / 32).max(1);
     let few: Vec<Peak> = thin(peaks, every);
     let strong = median(few.iter().map(|p| p.slope).collect())?;
@@ -173,7 +173,7 @@ fn thin(peaks: &[Peak], every: usize) -> Vec<Peak> {
     keep
 }
 
-/// How much a peak speaks for a line.
+/// The weight of a peak as evidence for a line.
 fn voice(peak: &Peak, p: f64, q: f64, strong: f64) -> f64 {
     let off = (peak.u - (p + (q - p) * peak.t)).abs();
     (1.0 - off).max(0.0) * (peak.slope / strong).min(2.0)

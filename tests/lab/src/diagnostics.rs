@@ -268,7 +268,7 @@ fn pendulums() -> Vec<Task> {
     periods.chain(heights).collect()
 }
 
-/// Period (from three zero crossings) and share of the height kept, of a stiff plate let go at 60
+/// Period (from three zero crossings) and share of the height kept, of a stiff plate released at 60
 /// degrees.
 fn swing(solver: usize) -> Result<[f64; 2], ClothError> {
     let mesh = Rectangle::new(Layout::Equilateral, 0.3, 1.0, 10);

@@ -44,7 +44,7 @@ pub use stability::stability;
 pub use toile_cloth::energy::{Bending, Membrane, Models};
 pub use toile_cloth::solver::layout::Layout;
 
-/// Hears how far a run is (0 to 1) and what comes next; may stop it there.
+/// Called with how far a run is (0 to 1) and what comes next; may stop it there.
 pub type Progress<'p> = dyn FnMut(f64, &str) -> ControlFlow<()> + 'p;
 
 /// Exit codes of the program.

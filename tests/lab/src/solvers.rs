@@ -47,9 +47,9 @@ pub enum Way {
     ImplicitEulerGradients,
     /// Central differences.
     CentralDifferences,
-    /// XPBD, 20 small steps a step.
+    /// XPBD, 20 substeps per step.
     Xpbd,
-    /// Projective dynamics, 10 turns a step.
+    /// Projective dynamics, 10 iterations per step.
     Projective,
 }
 

@@ -1,5 +1,5 @@
-//! Every built-in stage, given what no one would give it on purpose: it answers or refuses, and
-//! never panics, and what it gives is sound.
+//! Every built-in stage, given inputs that no one would give it on purpose: it answers or refuses,
+//! and never panics, and what it gives is sound.
 //!
 //! Artifacts of a small, real run of the vest are edited at random. What fails the artifact's own
 //! check never reaches a stage in a real run, because the runner names it where it was made; so it
@@ -109,7 +109,8 @@ fn trial(card: &Card, stage: &dyn Stage, edits: &[Edit]) -> Result<bool, String>
 fn every_stage_answers_or_refuses_whatever_it_is_given() {
     let mut failures = Vec::new();
     for (card, stage) in stages() {
-        // With --nocapture it tells which stage ends the process, should one run out of memory.
+        // With --nocapture this line names the stage that ended the process, should one run out of
+        // memory.
         eprintln!("{} ({})", card.name, card.role.as_str());
         let edits = prop::collection::vec(any::<Edit>(), 0..4);
         let edited = Cell::new(0);
@@ -123,7 +124,7 @@ fn every_stage_answers_or_refuses_whatever_it_is_given() {
             })
         };
         let mut outcome = tried(cases());
-        // Some stages take little of what is edited.
+        // Some stages refuse most edited inputs and need more cases.
         if outcome.is_ok() && edited.get() == 0 {
             outcome = tried(cases() * MORE);
         }

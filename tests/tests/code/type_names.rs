@@ -64,7 +64,11 @@ fn nearly_every_type_has_a_name_of_its_own() {
     let shared: Vec<_> = count.iter().filter(|(_, at)| at.len() > 1).collect();
     let share = 100.0 * shared.len() as f64 / count.len() as f64;
     println!("{} of {} names of types are used more than once: {share:.1} %", shared.len(), count.len());
-    assert!(share <= MOST_SHARED, "{share:.1} % of {} names, at most {MOST_SHARED} %: {shared:#?}", count.len());
+    assert!(
+        share <= MOST_SHARED,
+        "{share:.1} % of {} names, at most {MOST_SHARED} %: {shared:#?}",
+        count.len()
+    );
 }
 
 #[test]

@@ -34,8 +34,8 @@ fn result(pipeline: &Pipeline, folder: &Path) -> Result<Vec<(String, Option<Dige
     Ok(run.results)
 }
 
-/// A manifest is believed by its first line: the digest of the rest. Spoilt within, it gets the
-/// right one, so that what is behind is read.
+/// A manifest is trusted if its first line is the digest of the rest. After the body is spoilt, the
+/// first line is made right, so that the body is read.
 fn sealed(body: &[u8]) -> Vec<u8> {
     [Digest::of(body).hex().as_bytes(), b"\n", body].concat()
 }
@@ -50,8 +50,8 @@ fn spoilt(kept: &[Kept], dice: &mut Dice) -> Vec<u8> {
         Some(line) => sealed(&spoil::text(&[bytes[line + 1..].to_vec()], dice)),
         None => spoil::binary(own, dice),
     };
-    // A blob is believed by its name: where it is to be read, it gets a new one, here told by a
-    // one.
+    // A blob is trusted if its name is its digest: where it is to be read, it gets a new one, here
+    // named by a one.
     let renamed = u8::from(deep && is_blob(path));
     [&(at as u32).to_le_bytes()[..], &[renamed], &content].concat()
 }
@@ -104,7 +104,8 @@ fn cache_entries() {
             lay(&kept, case);
             let renamed = case[4] == 1;
             let now = result(&pipeline, &folder)?;
-            // What bears its own digest is believed: only what does not is known to be spoilt.
+            // Content with its own digest is trusted: only content without it is known to be
+            // spoilt.
             match renamed || now == first || is_sealed(&kept, case) {
                 true => Ok(()),
                 false => Err("a spoilt entry changed the result".to_owned()),

@@ -54,7 +54,7 @@ fn reads(stage: &str, file: &str, folder: &Path) -> Result<bool, String> {
     answers(stage, &options, Inputs::default(), folder).map(|made| made.is_some())
 }
 
-/// Runs a stage; what it gives is sound, what it refuses has words, and is nothing.
+/// Runs a stage; its result must be sound, and a refusal must have a message.
 fn answers(
     stage: &str,
     options: &str,

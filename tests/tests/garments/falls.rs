@@ -1,4 +1,4 @@
-//! A garment that misses its body or slides off it is a failure, told early; one that keeps its
+//! A garment that misses its body or slides off it is a failure, reported early; one that keeps its
 //! place is not.
 
 use serde_json::{Value, json};

@@ -1,8 +1,8 @@
 //! Real photos, carried through to the draped garment.
 //!
 //! The photos are no part of the repository: `TOILE_SHARED` names a folder with
-//! `data/photos/*.jpg`; without it the tests say "skipped". docs/log/2026-11-27-photos.md tells of
-//! all photos.
+//! `data/photos/*.jpg`; without it the tests say "skipped". docs/log/2026-11-27-photos.md reports
+//! on all photos.
 
 use std::path::PathBuf;
 use toile_tests::{pipeline, toile};

@@ -21,7 +21,7 @@ const PIPELINE: &str = r#"(
 )
 "#;
 
-/// Runs in two rounds: as decided and with each decision turned round.
+/// Runs in two rounds: as decided and with each decision reversed.
 const RUNS: usize = 6;
 
 fn folder() -> tempfile::TempDir {
@@ -221,7 +221,7 @@ fn the_command_keeps_its_budget() {
     assert_eq!(some.code, 0, "{}", some.err);
     let words = "
 the budget ended after 2 of 6 runs; the same command goes on from there
-    not measured: Preset unasked, turned round by --also Preset
+    not measured: Preset unasked, reversed by --also Preset
 ";
     assert!(some.out.contains(words), "{}", some.out);
     let all = command(dir, &["--budget", "10m"]);

@@ -1,5 +1,5 @@
-//! What pipelines leave out by facts of their scene: `toile explain` tells it,
-//! `toile trade --ablate` turns it round.
+//! What pipelines leave out by facts of their scene: `toile explain` lists it, `toile trade
+//! --ablate` reverses it.
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
 use serde_json::Value;
@@ -85,7 +85,7 @@ fn factors_are_of_single_precision_where_that_solves_the_step() {
         decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.bending_continuation=false"]);
     let words = "
   StaticEquilibrium    simplified double precision of each step's factor: only where single does not solve the step (mixed-precision)
-      by      about 1024 triangles, whose matrix tells at each step how well it is solved
+      by      about 1024 triangles, whose matrix shows at each step how well it is solved
       within  surface 20 mm
 ";
     assert!(told.contains(words), "{told}");
@@ -133,7 +133,7 @@ fn what_nobody_asks_for_is_told_and_runs_on_request() {
     let file = skirt(dir.path());
     let words = "
   Preset               off        the whole stage (unasked)
-      by      nothing asked for depends on it
+      by      no requested result depends on it
       within  same bits
       saves   nothing that could be expected
       else    --also Preset
@@ -162,8 +162,8 @@ fn each_decision_is_turned_round_and_held_to_its_tolerance() {
     let (file, out) = (skirt(dir.path()), dir.path().join("ablation"));
     let answer = toile(&["trade", &file, "--ablate", "--repeats", "1", "--out", &out.display().to_string()]);
     assert_eq!(answer.code, 0, "{}", answer.err);
-    assert!(answer.out.contains("\n    turned round by --set 'scene.distances=Ahead'\n"), "{}", answer.out);
-    assert!(answer.out.contains("\n    turned round by --also Preset\n"), "{}", answer.out);
+    assert!(answer.out.contains("\n    reversed by --set 'scene.distances=Ahead'\n"), "{}", answer.out);
+    assert!(answer.out.contains("\n    reversed by --also Preset\n"), "{}", answer.out);
     let record: Value =
         serde_json::from_str(&std::fs::read_to_string(out.join("ablation.json")).unwrap()).unwrap();
     let rows = record["rows"].as_array().unwrap();
@@ -188,7 +188,7 @@ fn each_decision_is_turned_round_and_held_to_its_tolerance() {
     assert!(both.err.contains("'--ablate' cannot be used with '--knob <KEY=VALUES>'"), "{}", both.err);
 }
 
-/// What each decision of a pipeline saves, as `explain --json` tells it.
+/// What each decision of a pipeline saves, as `explain --json` gives it.
 fn savings(arguments: &[&str]) -> Vec<Value> {
     let answer = toile(&[&["explain", "--json"], arguments].concat());
     assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);

@@ -42,7 +42,7 @@ fn qualities_are_measured_once_proved_written_checked_and_run() {
     ];
     let answer = on(dir, "tune", "napkin.ron", &asked);
     assert_eq!(answer.code, 4, "one is not kept: {}{}", answer.out, answer.err);
-    let refused = "error: quality `Very fine`: an error of at most 0.000001 mm cannot be proved: the reference is known to ";
+    let refused = "error: quality `Very fine`: an error of at most 0.000001 mm cannot be verified: the reference is known to ";
     assert!(answer.err.contains(refused), "{}", answer.err);
     assert!(
         answer.out.contains("Rough (20 cm): StaticEquilibrium.speed ")

@@ -46,7 +46,8 @@ fn a_skirt_from_moved_starts_ends_in_the_same_folds() {
     let skirt = generate::tube(16, 16);
     let default = spread(&skirt, 4, 0, &[]);
     assert!(default < 2.5, "{default}");
-    // The choice that is fast leaves the folds to chance, or this test would tell nothing.
+    // With the fast choice the folds differ by chance; if they did not, this test would prove
+    // nothing.
     let fast = spread(&skirt, 4, 0, &["--set", "stages.StaticEquilibrium.bending_continuation=false"]);
     assert!(fast > 3.0, "{fast}");
 }

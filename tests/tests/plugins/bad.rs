@@ -15,8 +15,8 @@ fn refused(case: &str) -> String {
 fn a_wrong_declaration_is_refused() {
     assert_eq!(refused("NO_SYMBOL"), "it declares no plugin");
     assert_eq!(refused("WRONG_MAGIC"), "its declaration does not begin with TOILEPLG");
-    assert_eq!(refused("NEWER_MAJOR"), "it speaks ABI 2.2, this program speaks 1.0 to 1.2");
-    assert_eq!(refused("NEWER_MINOR"), "it speaks ABI 1.9, this program speaks 1.0 to 1.2");
+    assert_eq!(refused("NEWER_MAJOR"), "it is built for ABI 2.2, this program supports 1.0 to 1.2");
+    assert_eq!(refused("NEWER_MINOR"), "it is built for ABI 1.9, this program supports 1.0 to 1.2");
     assert_eq!(refused("SHORT_DECLARATION"), "its declaration has 40 bytes, at least 72 are needed");
     assert_eq!(refused("SHORT_TABLES"), "its stage tables have 64 bytes, at least 192 are needed");
     assert_eq!(refused("NULL_STAGES"), "it lacks the function `stages`");

@@ -1,4 +1,4 @@
-//! Colliders across the border, both ways, and a solver of a plugin.
+//! Colliders across the plugin ABI, both ways, and a solver of a plugin.
 
 use crate::plugins::kit::{make, registry_with, run};
 use std::sync::Arc;

@@ -57,7 +57,7 @@ fn a_digest_that_is_none_is_a_fault_of_the_file() {
     let pipeline = write(dir.path(), "[(file: \"x.so\", blake3: \"12\")]", "Otsu(id: \"o\")");
     let answer = toile(&["validate", &pipeline]);
     assert_eq!(answer.code, 3);
-    assert!(answer.err.contains("`blake3` wants 64 hexadecimal digits"), "{}", answer.err);
+    assert!(answer.err.contains("`blake3` must be 64 hexadecimal digits"), "{}", answer.err);
 }
 
 #[test]

@@ -151,7 +151,7 @@ fn a_run_that_never_asks_whether_to_stop_is_left_behind() {
     );
 }
 
-/// What a stage told.
+/// Notes and warnings of a stage.
 #[derive(Default)]
 struct Told(Mutex<Vec<String>>);
 

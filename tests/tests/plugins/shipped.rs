@@ -1,5 +1,5 @@
-//! The crates of plugins/ through the border: what they give is what they give linked in, bit for
-//! bit.
+//! The crates of plugins/ through the plugin ABI: what they give is what they give linked in, bit
+//! for bit.
 
 use std::ffi::OsString;
 use toile_core::testkit::{Trial, cases, folder, from_example};

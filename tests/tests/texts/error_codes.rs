@@ -65,7 +65,7 @@ fn static_equilibrium() {
 fn fast_finish() {
     let mut garment = good();
     garment.status.steps = 0;
-    let words = "the garment was not draped: the solver called it at rest before its first step; see that the cloth has weight and starts \
+    let words = "the garment was not draped: the solver found it at rest before its first step; see that the cloth has weight and starts \
                  off the body"
         .to_owned();
     assert_eq!(shortfalls(garment, None), [(ErrorCode::FastFinish, words)]);

@@ -23,12 +23,12 @@ const SLIPS: [Slip; 32] = [
     ("Scene(file:", "Scene(^fiel:", "unknown parameter `fiel`", "did you mean `file`?"),
     ("stages: [", "^stagse: [", "unknown field `stagse`", "did you mean `stages`?"),
     ("fabric: Preset", "^fabirc: Preset", "unknown field `fabirc`", "did you mean `fabric`?"),
-    ("texture: Check", "texture: ^Chekc", "`texture` wants ", "did you mean `Check`?"),
+    ("texture: Check", "texture: ^Chekc", "`texture` must be ", "did you mean `Check`?"),
     // values
     ("edge: \"16 mm\"", "edge: ^16", "`edge`: the length 16 has no unit; write \"16 mm\" or \"16 cm\"", ""),
     ("smooth: 1", "smooth: ^9", "`smooth` is 9, above its greatest value ", ""),
-    ("smooth: 1", "smooth: ^\"1\"", "`smooth` wants a number, found `\"1\"`", ""),
-    ("hysteresis: true", "hysteresis: ^yes", "`hysteresis` wants true | false, found `yes`", ""),
+    ("smooth: 1", "smooth: ^\"1\"", "`smooth` must be a number, found `\"1\"`", ""),
+    ("hysteresis: true", "hysteresis: ^yes", "`hysteresis` must be true | false, found `yes`", ""),
     // what lies outside the file
     ("/front.jpg\"", "/fornt.jpg\"", "Photos: cannot read ", ""),
     (
@@ -46,7 +46,7 @@ const SLIPS: [Slip; 32] = [
     (
         "\"back\":  MirrorOf(\"front\")",
         "\"back\":  ^MirrorOf(\"frnt\")",
-        "Photos: photo \"back\" is to mirror \"frnt\", which there is not",
+        "Photos: photo \"back\" is to mirror \"frnt\", which does not exist",
         "did you mean \"front\"?",
     ),
     ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),
@@ -96,7 +96,7 @@ fn each_slip_is_one_fault_at_its_place_with_the_name_that_was_meant() {
     for name in PIPELINES {
         let whole = fs::read_to_string(pipeline(name)).unwrap();
         assert_eq!(validated(&whole, dir.path()), (0, Vec::new()), "{name}");
-        // The head of a file is comments, which tell how it is run.
+        // The head of a file is comments, which say how to run it.
         let head = whole.find("\n(\n").unwrap();
         for (i, (right, slip, message, hint)) in SLIPS.iter().enumerate() {
             let Some(at) = whole[head..].find(right).map(|at| head + at) else { continue };

@@ -1,4 +1,4 @@
-//! The runs of an ablation that are done, as `ablation.jsonl` keeps them: a line a run.
+//! The runs of an ablation that are done, as `ablation.jsonl` keeps them: one line per run.
 
 use super::AblationOptions;
 use super::record::{GarmentChange, SCHEME};
@@ -25,11 +25,11 @@ const KIND: JournalKind = JournalKind {
 pub(super) enum Done {
     /// The pipeline as decided.
     AsDecided { round: usize, cpu_s: f64 },
-    /// With a decision turned round by an option.
+    /// With a decision reversed by an option.
     Turned { round: usize, by: String, came: Came },
 }
 
-/// What came of a run with a decision turned round.
+/// What came of a run with a decision reversed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Came {
@@ -85,7 +85,7 @@ pub(super) struct KeptRecord(Journal<Last, Done>);
 impl KeptRecord {
     /// The record of an earlier session of the same pipeline on the same machine, else a new one.
     ///
-    /// Runs that were stopped at a shorter limit than there is now are forgotten.
+    /// Runs that were stopped at a shorter limit than the present one are left out.
     pub(super) fn open(pipeline: &Pipeline, options: &AblationOptions, tell: &mut dyn FnMut(String)) -> Self {
         let (Machine { system, cores, threads, .. }, until) =
             (Machine::here(), options.bench.until.as_deref());
@@ -111,7 +111,7 @@ impl KeptRecord {
         self.add(Done::AsDecided { round, cpu_s: ran.cpu_s })
     }
 
-    /// Adds a run with a decision turned round, and writes.
+    /// Adds a run with a decision reversed, and writes.
     ///
     /// Errors: the folder cannot be written.
     pub(super) fn add_turned(&mut self, round: usize, by: &str, came: Came) -> Result<(), StageError> {
@@ -142,7 +142,7 @@ impl KeptRecord {
         self.0.lines.iter().filter_map(one).collect()
     }
 
-    /// What came of the runs with a decision turned round, by their rounds.
+    /// What came of the runs with a decision reversed, by their rounds.
     pub(super) fn turned(&self, option: &str) -> BTreeMap<usize, &Came> {
         let lines = self.0.lines.iter();
         let its = lines.filter_map(|done| match done {
@@ -152,7 +152,7 @@ impl KeptRecord {
         its.collect()
     }
 
-    /// Whether a decision is to be turned round in a round: what failed once is not run again.
+    /// Whether a decision is to be reversed in a round: what failed once is not run again.
     pub(super) fn is_missing(&self, option: &str, round: usize) -> bool {
         let came = self.turned(option);
         !came.contains_key(&round) && came.values().all(|c| c.failed().is_none())

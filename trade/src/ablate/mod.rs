@@ -1,9 +1,9 @@
-//! Every decision of a pipeline turned round, one at a time: what it costs, what it changes,
-//! whether its rule holds.
+//! Every decision of a pipeline reversed, one at a time: what it costs, what it changes, whether
+//! its rule holds.
 //!
-//! Runs are fresh, without a cache, in rounds: once as decided, then once with each decision turned
-//! round, and again. So what a busy machine does to one run it does to its neighbours as well, and
-//! times are compared within a round.
+//! Runs are fresh, without a cache, in rounds: once as decided, then once with each decision
+//! reversed, and again. So what a busy machine does to one run it does to its neighbours as well,
+//! and times are compared within a round.
 //!
 //! Each run is kept as soon as it is done, and a later session goes on from there. A round that was
 //! broken off is gone on with beside one more run as decided, since times and garments are compared

@@ -13,7 +13,7 @@ pub struct AblationOptions {
     pub repeats: usize,
     /// Time for everything; none ends with the last round.
     pub budget: Option<Duration>,
-    /// Longest run with a decision turned round.
+    /// Longest run with a decision reversed.
     pub limit: Option<Duration>,
     /// How runs are made.
     pub bench: Bench,

@@ -1,6 +1,6 @@
 //! How far an ablation is.
 
-/// What is told on the way.
+/// Progress of the measurement.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AblationProgress {
     /// Something about earlier sessions.

@@ -12,7 +12,7 @@ use toile_pipeline::decide::StageDecision;
 /// The version of this form.
 pub const SCHEME: u32 = 1;
 
-/// All decisions of a pipeline, each turned round.
+/// All decisions of a pipeline, each reversed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ablation {
     /// [`SCHEME`].
@@ -38,7 +38,7 @@ pub struct Ablation {
     pub reads: BTreeMap<String, Option<String>>,
     /// Processor time of each run as decided, seconds.
     pub cpu_s: Vec<f64>,
-    /// A row a decision that was turned round.
+    /// One row per decision that was reversed.
     pub rows: Vec<DecisionRow>,
     /// What is missing where the budget ended before all runs were done.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -50,19 +50,19 @@ pub struct Ablation {
 pub struct EndedBudget {
     /// Runs that are done.
     pub done: usize,
-    /// Runs that were asked for.
+    /// Runs that were requested.
     pub all: usize,
-    /// Decisions that were not turned round at all.
+    /// Decisions that were not reversed at all.
     pub not_measured: Vec<Unmeasured>,
 }
 
-/// A decision that was not turned round.
+/// A decision that was not reversed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unmeasured {
     /// The decision.
     #[serde(flatten)]
     pub decided: StageDecision,
-    /// The option that turns it round.
+    /// The option that reverses it.
     pub turned: String,
 }
 
@@ -74,21 +74,21 @@ impl Ablation {
     }
 }
 
-/// One decision turned round.
+/// One decision reversed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DecisionRow {
     /// The decision.
     #[serde(flatten)]
     pub decided: StageDecision,
-    /// The option that turns it round.
+    /// The option that reverses it.
     pub turned: String,
-    /// Processor time of each run with it turned round, seconds.
+    /// Processor time of each run with it reversed, seconds.
     pub cpu_s: Vec<f64>,
     /// What the decision saved in each round, seconds of processor time.
     pub saved_s: Vec<f64>,
     /// What turning it round changed; none where that run failed.
     pub change: Option<GarmentChange>,
-    /// Why the run with it turned round failed.
+    /// Why the run with it reversed failed.
     pub failed: Option<String>,
     /// Whether the rule is borne out.
     pub verdict: RuleVerdict,
@@ -139,7 +139,7 @@ pub struct GarmentChange {
     pub outline_mm: Millimetres,
     /// Root mean square difference of the textures, grey levels; none without textures.
     pub texture_levels: Option<f64>,
-    /// Pairs of triangles that cross, as decided and turned round; none where nobody counts.
+    /// Pairs of triangles that cross, as decided and reversed; none where they are not counted.
     pub crossings: [Option<usize>; 2],
 }
 
@@ -164,7 +164,7 @@ pub enum RuleVerdict {
     Holds,
     /// Turning it round changes more than its tolerance.
     ChangesMore,
-    /// What it saved in the mean is no more than chance may make.
+    /// Its mean saving is within what chance may give.
     SavesNothing,
     /// Turned round, the pipeline fails.
     Needed,
@@ -189,8 +189,8 @@ impl RuleVerdict {
             RuleVerdict::Holds => "borne out",
             RuleVerdict::ChangesMore => "NOT borne out: changes more than its tolerance",
             RuleVerdict::SavesNothing => "NOT borne out: saves nothing that can be measured",
-            RuleVerdict::Needed => "borne out: turned round, the pipeline fails",
-            RuleVerdict::Cut => "not decided: turned round, the run was stopped at the limit",
+            RuleVerdict::Needed => "borne out: reversed, the pipeline fails",
+            RuleVerdict::Cut => "not decided: reversed, the run was stopped at the limit",
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn ablation(
     }
 }
 
-/// The row of a decision; none where it was not turned round yet.
+/// The row of a decision; none where it was not yet reversed.
 fn row(turned: &Turned, kept: &KeptRecord) -> Option<DecisionRow> {
     let came = kept.turned(&turned.by);
     if came.is_empty() {

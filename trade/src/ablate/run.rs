@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use toile_core::{ErrorCode, StageError};
 use toile_pipeline::Pipeline;
 
-/// Runs the pipeline as decided and with each decision turned round, or goes on with what was run.
+/// Runs the pipeline as decided and with each decision reversed, or goes on with what was run.
 ///
 /// Errors: no decision there is to turn round; the pipeline fails as it is, or does not end within
 /// the budget; an override that does not load; the folder cannot be written; stopped by the user
@@ -90,7 +90,7 @@ impl Session<'_> {
         })
     }
 
-    /// One run with a decision turned round, beside the run of the same round as decided.
+    /// One run with a decision reversed, beside the run of the same round as decided.
     fn turned_round(
         &mut self,
         index: usize,
@@ -125,7 +125,7 @@ impl Session<'_> {
         if left.is_some_and(|l| l.is_zero()) { Err(AblationStop::Budget) } else { Ok(left) }
     }
 
-    /// The decisions that a round has not turned round yet.
+    /// The decisions that a round has not yet reversed.
     fn missing(&self, round: usize) -> impl Iterator<Item = usize> + '_ {
         (0..self.turned.len()).filter(move |i| self.kept.is_missing(&self.turned[*i].by, round))
     }

@@ -4,16 +4,16 @@ use super::record::{Ablation, DecisionRow, EndedBudget, GarmentChange};
 use crate::record::median;
 use std::fmt::Write;
 
-/// The table: a line a decision, and below it how it is turned round and what the rule comes to.
+/// The table: one line per decision, and below it how it is reversed and the verdict on its rule.
 pub fn lines(ablation: &Ablation) -> Vec<String> {
     let mut lines = vec![as_decided(ablation), head()];
     for row in &ablation.rows {
         lines.push(line(row));
-        lines.push(format!("    turned round by {}", row.turned));
+        lines.push(format!("    reversed by {}", row.turned));
         let why = row.failed.as_ref().map_or_else(String::new, |why| format!(": {why}"));
         lines.push(format!("    {}{why}", row.verdict.as_str()));
     }
-    lines.push("surface and outline in mm, texture in grey levels, crossings as decided and turned round; +- is twice the standard error of what was saved".into());
+    lines.push("surface and outline in mm, texture in grey levels, crossings as decided and reversed; +- is twice the standard error of what was saved".into());
     lines.extend(ablation.cut.iter().flat_map(missing));
     lines
 }
@@ -56,7 +56,7 @@ fn missing(cut: &EndedBudget) -> Vec<String> {
     )];
     for u in &cut.not_measured {
         lines.push(format!(
-            "    not measured: {} {}, turned round by {}",
+            "    not measured: {} {}, reversed by {}",
             u.decided.stage, u.decided.decision.rule, u.turned
         ));
     }

@@ -44,7 +44,7 @@ fn row(tolerance: Tolerance, change: Option<GarmentChange>, saved_s: &[f64]) -> 
 #[test]
 fn a_run_that_was_stopped_at_its_limit_bears_nothing_out() {
     let cut = DecisionRow { verdict: RuleVerdict::Cut, ..row(Tolerance::SameBits, None, &[]) };
-    assert_eq!(cut.verdict.as_str(), "not decided: turned round, the run was stopped at the limit");
+    assert_eq!(cut.verdict.as_str(), "not decided: reversed, the run was stopped at the limit");
 }
 
 #[test]
@@ -110,12 +110,12 @@ fn the_table_word_for_word() {
 vest: as decided 2.00 s of processor time (from 1.90 to 2.20 s in 3 runs)
 stage                rule               turned, s saved, s       +- |    95 %   worst  bits | outl 95   worst | texture | crossings  within
 Mean                 few-pixels              2.40     0.40     0.12 |    3.00    6.00 other |   0.300   0.600 |    3.00 |      0, 3  outline 1 mm
-    turned round by --set 'stages.Mean.pixel=\"0 mm\"'
+    reversed by --set 'stages.Mean.pixel=\"0 mm\"'
     borne out
 Mean                 few-pixels                 -        -        - |       -       -     - |       -       - |       - |         -  same bits
-    turned round by --set 'stages.Mean.pixel=\"0 mm\"'
-    borne out: turned round, the pipeline fails: Rest: it does not close
-surface and outline in mm, texture in grey levels, crossings as decided and turned round; +- is twice the standard error of what was saved";
+    reversed by --set 'stages.Mean.pixel=\"0 mm\"'
+    borne out: reversed, the pipeline fails: Rest: it does not close
+surface and outline in mm, texture in grey levels, crossings as decided and reversed; +- is twice the standard error of what was saved";
     assert_eq!(lines(&ablation()).join("\n"), words);
 }
 
@@ -124,7 +124,7 @@ fn a_table_that_was_cut_short_says_what_is_missing() {
     let told = lines(&cut());
     let words = "\
 the budget ended after 4 of 9 runs; the same command goes on from there
-    not measured: Mean few-pixels, turned round by --set 'stages.Mean.pixel=\"0 mm\"'";
+    not measured: Mean few-pixels, reversed by --set 'stages.Mean.pixel=\"0 mm\"'";
     assert_eq!(told[told.len() - 2..].join("\n"), words);
     assert_eq!(csv(&cut()).lines().count(), 2, "rows of what was measured alone");
 }
@@ -134,7 +134,7 @@ fn the_file_word_for_word() {
     let words = "\
 stage,rule,state,within,turned_round_by,cpu_s,cpu_turned_s,saved_s,saved_noise_s,same_bits,distance_mean_mm,distance_p95_mm,distance_max_mm,outline_p95_mm,outline_max_mm,texture_levels,crossings,crossings_turned,verdict
 Mean,few-pixels,simplified,outline 1 mm,\"--set 'stages.Mean.pixel=\"\"0 mm\"\"'\",2,2.4,0.4,0.11547,false,1.5,3,6,0.3,0.6,3,0,3,borne out
-Mean,few-pixels,simplified,same bits,\"--set 'stages.Mean.pixel=\"\"0 mm\"\"'\",2,,,,,,,,,,,,,borne out: turned round; the pipeline fails
+Mean,few-pixels,simplified,same bits,\"--set 'stages.Mean.pixel=\"\"0 mm\"\"'\",2,,,,,,,,,,,,,borne out: reversed; the pipeline fails
 ";
     assert_eq!(csv(&ablation()), words);
 }

@@ -1,4 +1,4 @@
-//! A pipeline with one of its decisions turned round.
+//! A pipeline with one of its decisions reversed.
 
 use crate::knobs::source::{Source, path_of};
 use toile_core::StageError;
@@ -6,17 +6,17 @@ use toile_core::decide::Turn;
 use toile_pipeline::decide::{StageDecision, decisions};
 use toile_pipeline::{Override, Pipeline, RunOptions};
 
-/// A decision with the pipeline that it is turned round in.
+/// A decision with the pipeline that it is reversed in.
 pub(super) struct Turned {
     pub(super) decided: StageDecision,
-    /// The option that turns it round; no two decisions have the same.
+    /// The option that reverses it; no two decisions have the same.
     pub(super) by: String,
     pub(super) pipeline: Pipeline,
     /// Stages that run though nothing asks for them.
     pub(super) also: Vec<String>,
 }
 
-/// Every decision of a run of the pipeline up to a stage, each turned round.
+/// Every decision of a run of the pipeline up to a stage, each reversed.
 ///
 /// Errors: there is none; an override that does not load.
 pub(super) fn all_turned(

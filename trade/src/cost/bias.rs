@@ -1,9 +1,9 @@
-//! How far the rules of sizes lie beside the facts, learnt from runs.
+//! How far the rules' estimates of sizes differ from measured sizes, learnt from runs.
 //!
-//! A T-shirt fills its photo's frame less than a vest does, and its outline takes fewer triangles:
-//! the rules know neither. Of each stage and quantity the middle of fact / rule is kept, by kind of
-//! garment and for all kinds together, and the same of all stages together: what a T-shirt's mesh
-//! has in one stage it has in the next as well.
+//! A T-shirt fills less of its photo's frame than a vest does, and its outline takes fewer
+//! triangles: the rules have neither fact. For each stage and quantity the median of measured /
+//! estimated is kept, by kind of garment and for all kinds together, and the same for all stages
+//! together: an error in a T-shirt's mesh size recurs in all later stages.
 
 use super::record::CostRecord;
 use super::seen::median;
@@ -13,12 +13,12 @@ use toile_core::cost::{Quantity, Size};
 /// A stage and a kind of garment (none for all of them), and a quantity.
 type BiasPlace = (Option<String>, Option<String>, Quantity);
 
-/// Factors on what the rules foresee.
+/// Factors on the rules' estimates.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Bias(BTreeMap<BiasPlace, f64>);
 
 impl Bias {
-    /// Learns from runs whose sizes were foreseen.
+    /// Learns from runs whose sizes were estimated.
     pub(super) fn learn<'a>(records: impl Iterator<Item = &'a CostRecord>) -> Self {
         let mut ratios: BTreeMap<BiasPlace, Vec<f64>> = BTreeMap::new();
         for r in records {
@@ -32,7 +32,7 @@ impl Bias {
         Bias(ratios.into_iter().map(|(place, mut all)| (place, median(&mut all).exp())).collect())
     }
 
-    /// What the rules foresee, brought to what they should have.
+    /// The rules' estimate, corrected by the factors.
     pub(super) fn corrected(&self, stage: &str, style: &str, foreseen: &Size) -> Size {
         let places = places(stage, style);
         let factor = |q| {
@@ -43,7 +43,8 @@ impl Bias {
     }
 }
 
-/// Where what holds for a stage and a kind of garment is looked up, the nearest first.
+/// The keys under which the factor of a stage and a kind of garment is looked up, the most specific
+/// first.
 fn places(stage: &str, style: &str) -> [(Option<String>, Option<String>); 4] {
     let (stage, style) = (Some(stage.to_owned()), Some(style.to_owned()));
     [(stage.clone(), style.clone()), (None, style), (stage, None), (None, None)]

@@ -4,12 +4,13 @@ use super::record::{CostFigure, CostRecord};
 use super::{Costs, StagePlace};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A prediction is right where it differs from the fact by at most this share of the fact.
+/// A prediction is right where it differs from the measured value by at most this share of that
+/// value.
 const RIGHT: f64 = 0.3;
-/// Shorter stages are timer and cache noise, seconds; lesser memory, bytes.
+/// Times below this, seconds, and memory below this, bytes, are noise of timer and cache.
 const TELLING: (f64, f64) = (1e-3, 1e6);
 
-/// Whether a prediction is near enough to the fact.
+/// Whether a prediction is near enough to the measured value.
 pub(super) fn is_right(prediction: f64, fact: f64) -> bool {
     (prediction / fact - 1.0).abs() <= RIGHT
 }
@@ -19,9 +20,9 @@ pub(super) fn is_right(prediction: f64, fact: f64) -> bool {
 pub struct Tally {
     /// Predictions.
     pub count: usize,
-    /// Of these, within 30 % of the fact.
+    /// Predictions within 30 % of the measured value.
     pub right: usize,
-    /// Of these, the fact lies in the range of 80 %.
+    /// Predictions whose 80 % range contains the measured value.
     pub in_range: usize,
 }
 
@@ -47,9 +48,9 @@ pub struct StageVerdict {
     pub stage: String,
     /// True where no other pipeline has this stage, and others of its role stood in.
     pub stand_in: bool,
-    /// Prediction / fact of each run, ascending.
+    /// Predicted / measured of each run, ascending.
     pub ratios: Vec<f64>,
-    /// The middle of the facts.
+    /// The median of the measured values.
     pub fact: f64,
     /// How many are right.
     pub tally: Tally,
@@ -64,9 +65,9 @@ pub struct PredictionCheck {
     pub stages: Vec<StageVerdict>,
     /// Every prediction; stages without any law count as wrong.
     pub all: Tally,
-    /// Those of facts that tell: 1 ms and longer, 1 MB and more.
+    /// Those of measured values above the noise: 1 ms and longer, 1 MB and more.
     pub telling: Tally,
-    /// Telling ones of stages that other pipelines have too.
+    /// Those of `telling` whose stage other pipelines have, too.
     pub met: Tally,
 }
 

@@ -15,12 +15,12 @@ const SHIPPED_RUNS: f64 = 2.0;
 const OTHER_MACHINE: f64 = 0.35;
 /// How far stages of a role differ, where a stage has no record of its own.
 const OTHER_STAGE: f64 = 0.7;
-/// Shorter work says nothing of a machine's speed, seconds.
+/// Shorter runs do not measure a machine's speed, seconds.
 const TELLING_S: f64 = 1e-3;
 /// Runs of stages by which a machine's speed is known.
 const TELLING_RUNS: usize = 5;
 
-/// Laws of stages, each fitted when it is first asked for: a run asks for those of the stages that
+/// Laws of stages, each fitted when it is first requested: a run asks for those of the stages that
 /// it had to run.
 #[derive(Debug, Default)]
 pub struct Costs {
@@ -92,8 +92,8 @@ impl Costs {
         self.made.get(key)
     }
 
-    /// What the rules foresee at a stage, corrected by how far they were off in earlier runs;
-    /// `style` as in the records.
+    /// The rules' estimate for a stage, corrected by how far they were off in earlier runs; `style`
+    /// as in the records.
     pub fn corrected(&self, stage: &str, style: &str, foreseen: &Size) -> Size {
         let bias = self.bias.get_or_init(|| Bias::learn(self.own.iter().chain(&self.shipped)));
         bias.corrected(stage, style, foreseen)
@@ -109,7 +109,7 @@ impl Costs {
         Some(law.estimate(size, at.style, self.met.contains(at.pipeline), more))
     }
 
-    /// How far this machine may lie from what the laws rest on, as a logarithm.
+    /// How far this machine may differ from those that the laws were measured on, as a logarithm.
     fn elsewhere(&self, figure: CostFigure) -> f64 {
         let is_told = self.shipped.is_empty() || !figure.is_time() || self.speed(figure).is_some();
         if is_told { 0.0 } else { OTHER_MACHINE }

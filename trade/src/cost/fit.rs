@@ -1,14 +1,14 @@
-//! Least squares with factors that are not negative, of relative errors, little swayed by outliers.
+//! Least squares with factors that are not negative, of relative errors, robust against outliers.
 //!
-//! Method: all subsets of the few terms are tried; on each, weighted least squares of prediction /
-//! fact - 1 with weights that fall off for what lies far out (Huber 1964, iteratively reweighted).
-//! How far is measured by the logarithm of prediction / fact: three times too much is as far out as
-//! a third, and one odd run bends a law no more from above than from below. Of the subsets whose
-//! factors are all positive, the one with the least generalised cross-validation counts (Golub,
-//! Heath, Wahba 1979). Non-negative factors keep a law rising, so that it can be used beyond the
-//! sizes that were measured. Cost: 2^terms small systems. Limit: five terms.
+//! Method: all subsets of the few terms are tried; on each, weighted least squares of predicted /
+//! measured - 1, with weights that fall for outliers (Huber 1964, iteratively reweighted). The
+//! distance of an outlier is the logarithm of predicted / measured: three times too much is as far
+//! out as a third, and one odd run affects a law no more from above than from below. Of the subsets
+//! whose factors are all positive, the one with the least generalised cross-validation counts
+//! (Golub, Heath, Wahba 1979). Non-negative factors keep a law rising, so that it can be used
+//! beyond the sizes that were measured. Cost: 2^terms small systems. Limit: five terms.
 
-/// One observation: the terms' values, the fact (greater than 0) and its weight.
+/// One observation: the terms' values, the measured value (greater than 0) and its weight.
 #[derive(Debug, Clone)]
 pub(super) struct Observation {
     pub(super) terms: Vec<f64>,
@@ -51,7 +51,7 @@ fn predicted(row: &Observation, columns: &[usize], factors: &[f64]) -> f64 {
     columns.iter().zip(factors).map(|(c, f)| row.terms[*c] * f).sum()
 }
 
-/// How far a prediction lies from the fact, as a logarithm.
+/// How far a prediction lies from the measured value, as a logarithm.
 fn error(row: &Observation, columns: &[usize], factors: &[f64]) -> f64 {
     (predicted(row, columns, factors) / row.fact).ln().abs().min(FARTHEST)
 }

@@ -1,9 +1,9 @@
 //! What a kind of garment adds to a law of sizes.
 //!
 //! A vest's outline is curved at neck and armholes where a T-shirt's runs straight: at the same
-//! sizes its mesh takes more mending. No size says so, but other garments of the kind do. Of each
-//! kind the middle of fact / prediction is kept, by pipelines and drawn towards 1 while these are
-//! few (the mean of a random effect: Robinson, That BLUP is a good thing, 1991).
+//! sizes its mesh takes more mending. No size says so, but other garments of the kind do. For each
+//! kind the median of measured / predicted is kept, by pipelines and shrunk towards 1 while these
+//! are few (the mean of a random effect: Robinson, That BLUP is a good thing, 1991).
 
 use super::seen::{Seen, median};
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ const HALF: f64 = 0.6;
 pub(super) struct Kinds(BTreeMap<String, f64>);
 
 impl Kinds {
-    /// Learns from runs and their errors, ln(fact / prediction).
+    /// Learns from runs and their errors, ln(measured / predicted).
     pub(super) fn learn(seen: &[Seen<'_>], errors: &[f64]) -> Self {
         let mut runs: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
         for (s, error) in seen.iter().zip(errors) {

@@ -13,8 +13,8 @@ const NORMAL_90: f64 = 1.2816;
 const LEAST_SPREAD: f64 = 0.05;
 /// Growth of the spread for each power of e beyond what was measured.
 const BEYOND: f64 = 0.25;
-/// How far the same stage differs from pipeline to pipeline before anything is known of that, as a
-/// logarithm, and for how many pipelines that counts.
+/// Prior for how far the same stage differs from pipeline to pipeline, as a logarithm, and the
+/// number of pipelines that this prior counts for.
 const BETWEEN: (f64, f64) = (0.15, 3.0);
 /// A single outlier among the errors counts as no more than this.
 const CAP: f64 = 1.5;
@@ -26,7 +26,7 @@ pub(super) struct CostLaw {
     factors: Vec<f64>,
     /// What kinds of garment add to the sum of terms.
     kinds: Kinds,
-    /// Standard deviation of ln(fact / prediction).
+    /// Standard deviation of ln(measured / predicted).
     spread: f64,
     /// Degrees of freedom of the spread.
     free: f64,

@@ -9,7 +9,7 @@ use toile_pipeline::cost::Meter;
 /// A program's count of the memory that it holds.
 #[derive(Debug, Clone, Copy)]
 pub struct MemoryCount {
-    /// Bytes held now; 0 where nobody counts.
+    /// Bytes held now; 0 where they are not counted.
     pub held: fn() -> usize,
     /// Most bytes held since the peak was last forgotten.
     pub peak: fn() -> usize,

@@ -5,11 +5,11 @@
 //!
 //! - `terms`, `fit`, `law`: a stage's law, a sum of terms of its sizes with factors that are not
 //!   negative; `kinds`: what a kind of garment adds to it;
-//! - `bias`: how far the rules of sizes lie beside the facts;
+//! - `bias`: how far the rules' estimates of sizes differ from measured sizes;
 //! - `record`, `store`, `shipped`: what stages took, on this machine and on the one of the shipped
 //!   file;
-//! - `costs`: the laws of all stages; `predict`: a pipeline's forecast; `meter`, `note`: facts of a
-//!   run;
+//! - `costs`: the laws of all stages; `predict`: a pipeline's forecast; `meter`, `note`:
+//!   measurements of a run;
 //! - `sweep`, `repeats`, `check`: the measurement that the shipped file comes from, and the proof
 //!   by leaving pipelines out;
 //! - `words`: what people read.

@@ -55,7 +55,7 @@ fn all(f: &Foreseen) -> Size {
     f.given.clone().joined(&f.made)
 }
 
-/// What follows from facts of earlier runs where there are some, else the corrected rules.
+/// The sizes of earlier runs where there are some, else the corrected rules.
 fn best(corrected: &Size, rules: &Size, facts: &Size) -> Size {
     let told = facts.iter().filter(|(q, a)| rules.get(*q) != Some(*a));
     told.fold(corrected.clone(), |all, (q, a)| all.with(q, a))

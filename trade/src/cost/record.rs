@@ -30,7 +30,7 @@ impl CostFigure {
         if self.is_time() { 2e-5 } else { 16_384.0 }
     }
 
-    /// The fact of a run, at least the floor.
+    /// The measured value of a run, at least the floor.
     pub fn of(self, used: &Used) -> Option<f64> {
         let fact = match self {
             CostFigure::Wall => Some(used.wall_s),

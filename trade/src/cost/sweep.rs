@@ -21,10 +21,10 @@ pub struct Variation {
     pub overrides: Vec<Override>,
 }
 
-/// The settings of a pipeline; one without mesher and photos has its own alone. Photos of other
-/// sizes are written below `folder`.
+/// The settings of a pipeline. A pipeline without mesher and photos has one: its own. Photos of
+/// other sizes are written below `folder`.
 ///
-/// Errors: a photo cannot be read, or the folder not be written.
+/// Errors: a photo cannot be read, or the folder cannot be written.
 pub fn variations(pipeline: &Pipeline, folder: &Path) -> Result<Vec<Variation>, StageError> {
     let (edges, photos) = (edges(pipeline), photos(pipeline));
     let acts = |(edge, side): &(f64, f64)| {

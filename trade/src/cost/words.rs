@@ -50,7 +50,8 @@ pub fn forecast_lines(forecasts: &[&Forecast], source: &str) -> Vec<String> {
     lines
 }
 
-/// Prediction beside fact, a line a stage that ran whole, and how many were right.
+/// Predicted and measured values, one line per stage that ran whole, and how many predictions were
+/// right.
 pub fn beside(stages: &[(&str, Used, Predicted)]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut tally = Tally::default();

@@ -15,7 +15,7 @@ pub(crate) struct Damaged {
 
 impl Damaged {
     pub(super) fn new(path: &Path, line: usize, e: &serde_json::Error) -> Self {
-        // The reader knows of one line alone, and ends its words with that.
+        // The parser sees one line only, and ends its message with "at line 1".
         let words = e.to_string();
         let why = words.split(" at line ").next().unwrap_or_default().to_owned();
         Damaged { path: path.to_owned(), line, column: e.column(), why }

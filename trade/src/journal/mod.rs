@@ -129,13 +129,13 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
         Ok(Some(found))
     }
 
-    /// Puts a file aside that is not gone on from.
+    /// Renames the file of a record that is not continued.
     pub(crate) fn put_aside(folder: &Path, kind: JournalKind) {
         let _ = std::fs::rename(folder.join(kind.file()), folder.join(format!("{}.old.jsonl", kind.name)));
     }
 
     /// The record of an earlier session, as [`Journal::open`]; what is put aside and what is left
-    /// out of it is told.
+    /// out of it is reported.
     pub(crate) fn taken_up(
         folder: &Path,
         kind: JournalKind,

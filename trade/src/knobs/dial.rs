@@ -7,7 +7,7 @@ use toile_core::{Finer, Length, ParamDoc, StageError};
 /// What a knob may be.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Dial {
-    /// One of several stages, by name; the slot's own is among them or not.
+    /// One of several stages, by name, with or without the slot's own.
     Stage(Vec<String>),
     /// One of several texts.
     List(Vec<String>),
@@ -162,7 +162,7 @@ pub(crate) fn is_finer(way: f64, value: f64, other: f64, factor: f64) -> bool {
     (other / value).powf(way) >= factor * (1.0 - 1e-9)
 }
 
-/// The dial of a parameter for the values of a knob.
+/// The range of a parameter for the values of a knob.
 ///
 /// Errors: values that the parameter does not take.
 pub(crate) fn dial(key: &str, doc: &ParamDoc, values: &Values) -> Result<Dial, StageError> {

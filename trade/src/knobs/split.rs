@@ -1,4 +1,4 @@
-//! Cuts a RON text at commas that stand in no bracket and no quotes.
+//! Cuts a RON text at commas outside of brackets and quotes.
 
 /// The parts of `text` between commas at its top level, trimmed; empty parts are left out.
 pub(crate) fn at_commas(text: &str) -> Vec<&str> {

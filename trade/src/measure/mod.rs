@@ -58,7 +58,7 @@ impl Bench {
         self.anywhere(pipeline, &[], limit, cache)
     }
 
-    /// Runs a pipeline with stages that nothing asked for depends on.
+    /// Runs a pipeline with stages that no requested result depends on.
     pub fn run_also(
         &self,
         pipeline: &Pipeline,

@@ -13,9 +13,9 @@ use toile_pipeline::{Reads, RunResult};
 pub struct Ran {
     /// The garment at the end.
     pub garment: Garment,
-    /// Who wears it.
+    /// The body that wears it.
     pub body: Option<Body>,
-    /// It with its textures.
+    /// The garment with its textures.
     pub model: Option<Model>,
     /// The judgement of the garment; none where the run ended before it.
     pub figures: Option<Figures>,
@@ -25,7 +25,7 @@ pub struct Ran {
     pub wall_s: f64,
     /// Seconds of processor time, all threads.
     pub cpu_s: f64,
-    /// Greatest resident memory of its process, bytes, where the system tells.
+    /// Greatest resident memory of its process, bytes, where the system reports it.
     pub peak_memory_bytes: Option<u64>,
     /// Files that it read, with the digests of their contents.
     pub reads: BTreeMap<String, Option<String>>,

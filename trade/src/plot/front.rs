@@ -102,7 +102,7 @@ fn steps(trade: &Trade, x: &Axis, y: &Axis) -> Vec<PlotMark> {
     marks
 }
 
-/// The stages that a point chose: `GridMesher, Rest`.
+/// The stages that a point chose: `GridMesher, StaticEquilibrium`.
 fn kind(trade: &Trade, i: usize) -> String {
     let choices = trade.knobs.iter().filter(|k| !k.key.contains('.'));
     choices.filter_map(|k| trade.points[i].setting.get(&k.key).cloned()).collect::<Vec<_>>().join(", ")

@@ -13,7 +13,7 @@ use std::str::FromStr;
 use toile_core::{ErrorCode, Length, StageError};
 use toile_pipeline::{Basis, Quality, fill_qualities, load, without_qualities};
 
-/// A quality that is asked for: `Draft=10 mm`.
+/// A quality that is requested: `Draft=10 mm`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedQuality {
     /// Its name.
@@ -51,7 +51,7 @@ fn millimetres(length: Length) -> f64 {
     (length.metres() * 1e12).round() / 1e9
 }
 
-/// What came of the qualities that were asked for.
+/// What came of the qualities that were requested.
 #[derive(Debug, Default)]
 pub struct Proved {
     /// Those that are kept, with their proofs.
@@ -91,8 +91,8 @@ pub fn prove(
     Ok(proved)
 }
 
-/// The pipeline file with the proved qualities in its field, comments and order kept. Qualities
-/// that are there already stay, but where `--set` changes the file that they were measured on.
+/// The pipeline file with the verified qualities in its field, comments and order kept. Qualities
+/// that are there already stay, unless `--set` changes the file that they were measured on.
 ///
 /// Errors: the settings do not fit the file any more.
 pub fn written(

@@ -9,7 +9,7 @@ pub enum Clock {
     /// What passes for the user.
     #[default]
     Wall,
-    /// What the processors work, all together: the one to look at on a busy machine.
+    /// Processor time of all threads: use it on a busy machine.
     Cpu,
 }
 

@@ -11,8 +11,8 @@ pub struct Machine {
     pub cores: usize,
     /// Threads that the stages used.
     pub threads: usize,
-    /// Load of the machine over a minute at the end, where the system tells: beyond the threads
-    /// used, others worked too.
+    /// Load of the machine over a minute at the end, where the system reports it: beyond the
+    /// threads used, others worked too.
     pub load: Option<f64>,
 }
 

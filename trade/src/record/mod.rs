@@ -60,11 +60,12 @@ pub struct Trade {
     pub reference: Reference,
     /// Settings in the order in which they were measured; the first is the pipeline's own.
     pub points: Vec<Point>,
-    /// Indices of points that none beats in time and distance (95 %), by ascending time.
+    /// Indices of the points that no other beats in both time and distance (95 %), by ascending
+    /// time.
     pub front: Vec<usize>,
 }
 
-/// The points that keep the pipeline's limits and that none of those beats.
+/// The points within the pipeline's limits that no other such point beats.
 pub fn front_of(points: &[Point], clock: Clock) -> Vec<usize> {
     let nothing = Cost { time: f64::NAN, error: f64::NAN };
     let cost = |p: &Point| p.measured().filter(|m| m.sound).map_or(nothing, |m| m.cost(clock));

@@ -42,7 +42,7 @@ impl Floor {
     pub fn words(&self) -> String {
         let why = match self.by {
             FloorBasis::Nothing => {
-                return "nothing tells how well the reference is known: it was not refined".into();
+                return "the accuracy of the reference is not known: it was not refined".into();
             }
             FloorBasis::Missing => "so much is missing from its finest level to the limit of its order",
             FloorBasis::Unordered => "its levels show no order, and at first order so much is missing",
@@ -71,8 +71,8 @@ impl Floor {
 }
 
 impl Reference {
-    /// How well it is known; none where neither its levels nor moved starts tell. Of a reference of
-    /// one level nothing is known, however well its moved starts agree: the floor is infinite.
+    /// How well it is known; none where neither its levels nor moved starts show it. Of a reference
+    /// of one level nothing is known, however well its moved starts agree: the floor is infinite.
     pub fn floor(&self) -> Option<Floor> {
         if self.levels.len() == 1 {
             return Some(Floor { mm: f64::INFINITY, by: FloorBasis::Nothing });
@@ -126,8 +126,8 @@ mod tests {
         let floor = |missing, start| reference(levels(), missing, start).floor();
         assert_eq!(floor(Some(0.2), Some(5.8)), Some(Floor { mm: 5.8, by: FloorBasis::Spread }));
         assert_eq!(floor(Some(0.2), Some(0.0)), Some(Floor { mm: 0.2, by: FloorBasis::Missing }));
-        // Levels that do not come nearer: quiet starts do not make them a reference. Half as fine
-        // again would be a third of the way to the limit at first order.
+        // Levels that do not converge are no reference, even if moved starts agree. A level half as
+        // fine again would cover a third of the distance to the limit at first order.
         assert_eq!(floor(None, Some(0.0)), Some(Floor { mm: 2.0 * 8.32, by: FloorBasis::Unordered }));
         // Quiet starts of one level do not make it known.
         let alone = reference(vec![moved(None)], None, Some(0.1));
@@ -153,7 +153,7 @@ mod tests {
         );
         assert_eq!(
             words(FloorBasis::Nothing),
-            "nothing tells how well the reference is known: it was not refined"
+            "the accuracy of the reference is not known: it was not refined"
         );
         assert_eq!(
             words(FloorBasis::Spread),

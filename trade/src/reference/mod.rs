@@ -1,4 +1,4 @@
-//! The reference that settings are held against, and how well it is known.
+//! The reference that settings are compared with, and how well it is known.
 
 pub mod floor;
 pub mod richardson;

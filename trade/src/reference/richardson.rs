@@ -8,19 +8,20 @@
 //! number: of 2, 3 and 4 parts the second is 1.5 times finer than the first, the third 1.33 times
 //! than the second.
 //!
-//! Limits: with exactly two distances nothing tells an order from luck; with more, each of the last
-//! three must be smaller for its factor (over its logarithm) than the one before. Where they do not
-//! shrink there is no order, and nothing is claimed. An order above that of the method
+//! Limits: with exactly two distances an order cannot be distinguished from luck; with more, each
+//! of the last three must be smaller for its factor (over its logarithm) than the one before. Where
+//! they do not shrink there is no order, and nothing is claimed. An order above that of the method
 //! ([`FORMAL_ORDER`]) is luck as well, so what is missing is estimated with no more.
 
 /// Below this order a sequence is not said to converge: the estimate would be many times the last
 /// step.
 pub const LEAST_ORDER: f64 = 0.2;
 
-/// Order of linear finite elements in the places of their vertices: the estimate counts on no more.
+/// Order of linear finite elements in the positions of their vertices: the estimate assumes no
+/// higher order.
 pub const FORMAL_ORDER: f64 = 2.0;
 
-/// Beyond it nobody asks for an order.
+/// Upper end of the range in which the order is searched.
 const MOST_ORDER: f64 = 64.0;
 
 /// Halvings in which it is found to rounding.

@@ -15,7 +15,7 @@ const LOOK_AROUND: usize = 5;
 /// Settings without result after which a choice of stage is given up.
 const HOPELESS: usize = 2;
 /// Settings nearer than this to a measured one with the same choices, as a share of the knobs'
-/// ranges, tell nothing new.
+/// ranges, add nothing new.
 const LEAST_STEP: f64 = 0.03;
 /// Proposals that are looked at before there is said to be nothing new.
 const PROPOSALS: usize = 4000;
@@ -49,7 +49,8 @@ impl Study<'_> {
         self.board.knobs.iter().map(|k| k.dial.is_discrete()).collect()
     }
 
-    /// New, coarser than the reference, not of a hopeless choice, and likely to be done in time.
+    /// Whether a setting is new, coarser than the reference, without a hopeless choice, and likely
+    /// to end in time.
     fn is_worth(&self, setting: &Setting) -> bool {
         let is_known =
             self.store.lines.iter().any(|p| p.setting == *setting || self.is_beside(setting, &p.setting));

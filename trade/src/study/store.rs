@@ -1,4 +1,5 @@
-//! The record of a study, `trade.jsonl`: its reference in the first line, then a line a setting.
+//! The record of a study, `trade.jsonl`: its reference in the first line, then one line per
+//! setting.
 
 use crate::journal::{Journal, JournalKind};
 use crate::record::{Point, Reference, SCHEME};

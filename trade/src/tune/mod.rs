@@ -1,7 +1,7 @@
 //! Picks a setting from a measurement and proves it by fresh runs.
 //!
 //! For an error: the quickest setting that keeps it, for a time: the most accurate of the front
-//! that keeps that. The choice is run afresh, and again from moved starts, each held against the
+//! that keeps that. The choice is run afresh, and again from moved starts, each compared with the
 //! reference; where a run misses what was asked, the next one is tried. Ten of ten starts within
 //! the error mean, with 95 % confidence, that fewer than 26 % of all such starts miss it (1 -
 //! 0.05^(1/10)); three of three would mean 63 %.
@@ -29,7 +29,7 @@ use crate::record::Trade;
 use toile_core::StageError;
 use toile_pipeline::{Override, Pipeline};
 
-/// Holds a record against the pipeline that it is to be used for.
+/// Checks that a record fits the pipeline that it is to be used for.
 ///
 /// Errors: it holds no setting; it was measured by another version or on another pipeline, or
 /// before a stage, a parameter or a file changed.

@@ -41,11 +41,11 @@ pub fn refusal(trade: &Trade, wish: &Wish) -> Option<StageError> {
     below_floor(trade, wish).or_else(|| picks(trade, wish).is_empty().then(|| none_keeps(trade, wish)))
 }
 
-/// An error that the reference is too little known for.
+/// The error for a wish below the known accuracy of the reference.
 fn below_floor(trade: &Trade, wish: &Wish) -> Option<StageError> {
     let floor = trade.reference.floor()?;
     let asked = wish.max_error_mm.filter(|e| *e < floor.mm)?;
-    let message = format!("an error of at most {asked} mm cannot be proved: {}", floor.words());
+    let message = format!("an error of at most {asked} mm cannot be verified: {}", floor.words());
     // What is printed is what can be asked for.
     let least = (floor.mm * 100.0).ceil() / 100.0;
     let hint = match least.is_finite() {

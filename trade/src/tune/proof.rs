@@ -4,7 +4,7 @@ use super::Wish;
 use crate::errors::Millimetres;
 use crate::record::{Clock, Measured};
 
-/// A setting that was proved.
+/// A setting that was verified by fresh runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettingProof {
     /// The index of its point.
@@ -34,8 +34,8 @@ impl SettingProof {
         wish.is_kept(self.fresh.errors.distance_mm.p95, self.fresh.time(clock)) && self.fresh.sound && starts
     }
 
-    /// How the moved starts ended, where an error was asked for:
-    /// `10 of 10 moved starts within 2 mm, the worst 1.31 mm`.
+    /// How the moved starts ended, where an error was requested: `10 of 10 moved starts within 2
+    /// mm, the worst 1.31 mm`.
     pub fn starts_in_words(&self, wish: &Wish) -> Option<String> {
         let e = wish.max_error_mm.filter(|_| !self.starts.is_empty())?;
         let worst = self.starts.iter().map(|m| m.p95).fold(0.0, f64::max);

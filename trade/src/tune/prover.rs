@@ -1,4 +1,4 @@
-//! Runs the picks of a wish afresh, the best first, until one keeps it.
+//! Runs the settings that were picked for a wish again, the best first, until one meets it.
 
 use super::{SettingProof, Wish, overrides, picks, refusal};
 use crate::errors::compare;
@@ -41,8 +41,9 @@ impl Prover<'_> {
         }
     }
 
-    /// As [`Prover::prove`], against a reference that was run already; settings in `known`, proved
-    /// before from every start, are not run again, and those that are proved now are added.
+    /// As [`Prover::prove`], against a reference that was run already; settings in `known`,
+    /// verified before from every start, are not run again, and those that are verified now are
+    /// added.
     ///
     /// Errors: no setting is proved.
     pub fn prove_against(
@@ -82,7 +83,7 @@ impl Prover<'_> {
             format!("; the garment has several states of rest, and moved starts of the reference differ by up to {p:.2} mm")
         });
         StageError::new(ErrorCode::StaticEquilibrium, message)
-            .hint(format!("ask for a little more than is needed, or give `toile trade` more time{rest}"))
+            .hint(format!("ask for a slightly lower limit, or give `toile trade` more time{rest}"))
     }
 
     /// The garment of the reference, from the cache of the measurement where it is still there.

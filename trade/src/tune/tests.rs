@@ -129,7 +129,7 @@ fn an_error_below_what_the_reference_is_known_to_is_refused_though_settings_keep
     let e = refused(Some(1.6), None).unwrap();
     assert_eq!(
         e.message,
-        "an error of at most 1.6 mm cannot be proved: the reference is known to 1.70 mm only: so much is missing from \
+        "an error of at most 1.6 mm cannot be verified: the reference is known to 1.70 mm only: so much is missing from \
          its finest level to the limit of its order"
     );
     assert_eq!(

@@ -1,5 +1,4 @@
-//! A garment from the mesh of a file that is told nothing else: its panels, and its texture as
-//! their flat shape.
+//! A garment from the mesh of a file alone: its panels, and its texture as their flat shape.
 
 use crate::subject::{PanelTriangles, garment_of};
 use std::collections::{BTreeMap, HashMap};

@@ -71,7 +71,7 @@ fn placed(meshes: &FileMeshes, panel: &FlatPanel, own: &[usize]) -> Result<Vec<P
             let known = at[panel.triangles[k][c] as usize].get_or_insert(place);
             if *known != place {
                 return Err(format!(
-                    "triangle {k} of panel \"{}\" does not hang together as \"{FILE}\" says",
+                    "triangle {k} of panel \"{}\" is not connected as \"{FILE}\" says",
                     panel.name
                 ));
             }

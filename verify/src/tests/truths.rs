@@ -165,7 +165,7 @@ fn a_texture_in_any_scale_is_the_flat_shape_where_a_pattern_says_so() {
     for p in skirt.meshes.texture.iter_mut().flatten().flatten() {
         *p = Point2::new(0.37 * -p.y + 0.1, 0.37 * p.x);
     }
-    // Both pieces are one rectangle: only their seams tell how each panel lies on which.
+    // Both pieces are one rectangle: only their seams show which panel lies on which.
     skirt.meshes.names = vec![String::new(), String::new()];
     let found = skirt.judged();
     assert_eq!(failing(&found), Vec::<&str>::new(), "{:?}", found.checks);

@@ -21,7 +21,7 @@ pub(crate) struct LastMade {
     pub(crate) sets: Vec<Option<Vec<String>>>,
 }
 
-/// The maker's name of a port that takes the run's own record.
+/// What feeds a port that takes the record of the run itself, in place of a stage's id.
 pub(crate) const RUN_SO_FAR: &str = "the run so far";
 
 /// One thing that differs, or that does not.
@@ -51,7 +51,7 @@ pub enum Cause {
         name: String,
         /// Its value before, as RON; none where it is new.
         from: Option<String>,
-        /// Its value now; none where it is no more.
+        /// Its value now; none where the stage no longer has it.
         to: Option<String>,
     },
     /// An input.
@@ -134,7 +134,7 @@ impl Cache {
         let file = Path::new(&pipeline.file);
         let full = file.canonicalize().unwrap_or_else(|_| file.to_owned());
         let hex = Digest::of(full.display().to_string().as_bytes()).hex();
-        // An entry's name may hold what no file's name may.
+        // An entry's name may contain characters that no file name may contain.
         let entry =
             if entry.is_empty() { String::new() } else { Digest::of(entry.as_bytes()).hex()[..16].into() };
         self.store.root.join("last").join(&hex[..16]).join(format!("{id}.{entry}"))

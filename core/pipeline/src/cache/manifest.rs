@@ -2,7 +2,7 @@
 //! what it said.
 //!
 //! The text form is a line with the BLAKE3 digest of the rest, then the rest as JSON: a file that
-//! was cut short or changed is found out before any of it is believed.
+//! was cut short or changed is detected before any of it is used.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ pub(crate) struct Manifest {
     pub(crate) outputs: Vec<KeptValue>,
     /// Figures that it gave.
     figures: Vec<StoredFigure>,
-    /// What it told.
+    /// Its notes and warnings.
     #[serde(flatten)]
     pub(crate) remarks: Remarks,
 }

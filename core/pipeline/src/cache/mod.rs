@@ -2,7 +2,7 @@
 //!
 //! A stage that promises to be deterministic is run once for the same parameters, inputs, version
 //! and files; after that its result comes from a folder. The unit is one run: a stage that is
-//! mapped over a named set has one entry a panel, so that a changed front leaves the back alone.
+//! mapped over a named set has one entry per panel, so that a changed front leaves the back alone.
 //! Nothing is decoded before something needs it: the digests that keys are made of stand in small
 //! manifests.
 //!
@@ -39,8 +39,8 @@ use store::{FolderStore, Shelf};
 use toile_core::artifact::{Artifact, Digest, Digester, Kind, stored};
 use toile_core::{Card, MakePart, Memo, PortValue, StageError};
 
-/// Bytes that the cache holds at most after a run, if not told otherwise: some twenty garments with
-/// photos of 12 megapixels.
+/// Default for the greatest size of the cache after a run, bytes: some twenty garments with photos
+/// of 12 megapixels.
 pub const DEFAULT_LIMIT: u64 = 2_000_000_000;
 
 /// A folder of results. Several runs, and several programs, may use it at once.
@@ -61,7 +61,7 @@ pub struct Cache {
 pub(crate) enum CacheAnswer {
     /// It is there, whole as far as can be seen without reading it.
     Hit(Manifest),
-    /// It is not, or no more.
+    /// It is not there, or no longer.
     Miss(Miss),
 }
 
@@ -101,7 +101,7 @@ impl Cache {
         }
     }
 
-    /// A cache that keeps and finds nothing, for runs that only want the digests of their results.
+    /// A cache that keeps and finds nothing, for runs that only need the digests of their results.
     pub fn nowhere() -> Self {
         Cache { keeps: false, ..Cache::new(Path::new("")) }
     }
@@ -221,7 +221,7 @@ impl Cache {
         Ok(part)
     }
 
-    /// Tells the user something about the cache itself.
+    /// Warns the user about the cache itself.
     pub(crate) fn warn(&self, text: String) {
         let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
         if !warnings.contains(&text) {
@@ -293,7 +293,7 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// Of the stage of that card, whatever its parameters and inputs.
+    /// The parts of the stage with that card; all its parameters and inputs share them.
     pub(crate) fn of(cache: &Arc<Cache>, card: &Card) -> Arc<dyn Memo> {
         Arc::new(Parts { cache: cache.clone(), stage: key::of_stage(card) })
     }

@@ -1,4 +1,4 @@
-//! How much room the cache takes, and making room.
+//! How much space the cache takes, and freeing space.
 //!
 //! What was used longest ago goes first; a file's modification time is its last use. A run at work
 //! that loses a file to pruning makes its content anew.
@@ -96,7 +96,7 @@ fn files(folder: &Path) -> io::Result<Vec<CacheFile>> {
         };
         for item in listing {
             let item = item?;
-            // A file that another run took away meanwhile does not count.
+            // A file that another run removed meanwhile does not count.
             let Ok(meta) = item.metadata() else { continue };
             match meta.is_dir() {
                 true => folders.push(item.path()),

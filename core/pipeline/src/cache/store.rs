@@ -1,5 +1,5 @@
-//! The cache's files: written whole or not at all, believed only where their content has their
-//! name.
+//! The cache's files: written whole or not at all, and used only if the digest of the content is
+//! the file's name.
 //!
 //! Below the cache's folder: `blobs/ab/<digest>` holds encoded artifacts, `runs/ab/<key>`
 //! manifests, `parts/ab/<key>` parts of stages' work, `last/<pipeline>/<stage>` what a pipeline's

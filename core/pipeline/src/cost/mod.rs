@@ -1,10 +1,10 @@
-//! What a run will take, before it runs: sizes that travel along a pipeline's edges, and what
-//! stages took.
+//! Estimates before a run: the sizes of artifacts along a pipeline's edges, and what stages took in
+//! earlier runs.
 //!
-//! Before a run, [`foresee`] walks the pipeline and says of every stage how much it will be given
-//! and how much it will make. During a run a [`Meter`] says what each stage took. What follows from
-//! both, laws of time and memory, lies outside this crate: the amounts are here and in
-//! [`toile_core::cost`], the model is not.
+//! Before a run, [`foresee`] walks the pipeline and estimates for every stage the sizes of its
+//! inputs and outputs. During a run a [`Meter`] measures what each stage takes. The laws of time
+//! and memory that are fitted to both are outside this crate: only sizes and measures are here and
+//! in [`toile_core::cost`].
 
 mod foresee;
 mod meter;

@@ -19,8 +19,8 @@ const BODY_TRIANGLES: f64 = 17_000.0;
 /// Edge lengths that can be meant, metres.
 pub const EDGE_LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=1.0;
 
-/// The size of what a stage makes of what it is given: what it takes goes on, and what its role
-/// makes is added.
+/// The size of a stage's outputs for the size of its inputs: that of the inputs, with what its role
+/// usually adds.
 pub fn usual(node: &Node, given: &Size) -> Size {
     let all = given.clone();
     match node.card.role {

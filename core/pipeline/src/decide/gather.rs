@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use toile_core::{Cancel, Context, Known};
 
-/// A decision with the stage that it is of.
+/// A decision and its stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageDecision {
     /// The stage's id.
@@ -21,7 +21,7 @@ pub struct StageDecision {
 }
 
 impl StageDecision {
-    /// What the user writes to turn it round, but for the option's own name:
+    /// What the user writes to reverse it, but for the option's own name:
     /// `stages.StaticEquilibrium.speed=0.01`.
     ///
     /// `path` is where overrides reach the stage.

@@ -7,7 +7,7 @@ use std::path::Path;
 use toile_core::Known;
 use toile_core::prelude::*;
 
-/// A painter that tells what it knows.
+/// A painter that reports the facts it was given.
 #[stage(role = Texturer)]
 struct Telling {
     /// Whether its rules fail.

@@ -1,8 +1,8 @@
-//! `unasked`: a stage that nothing asked for depends on does not run.
+//! `unasked`: a stage that no requested result depends on does not run.
 //!
 //! Fact: no writer, no judgement and no `--until` needs what it makes, near or far (reachability in
 //! the graph of stages; as in dead-code elimination, Kennedy 1981). Tolerance: no bit of what is
-//! asked for changes. Turned round by `--also STAGE`.
+//! requested changes. Reversed by `--also STAGE`.
 
 use super::{Decision, Saves, State, Tolerance, Turn};
 

@@ -1,5 +1,5 @@
 //! What a sheet was made by: every stage with its version and its parameters, so that a difference
-//! can be told to be the user's own.
+//! can be traced to the user's own change.
 
 use super::GoldenSheet;
 use crate::load::{Pipeline, differing};

@@ -21,11 +21,11 @@
 //! ```
 //!
 //! A line of a panel is a place of the flat pattern and where it lies in space, mm (see `surface`).
-//! The tolerance that counts is the one that stands in the sheet, so whoever keeps the golden may
-//! widen or narrow it there. The digest tells whether any bit moved: within tolerance that is a
-//! remark, not a failure. `stage` says what the artifacts were made by (see `made_by`).
-//! `arithmetic` stands for the processor and the C library that the golden was recorded on, so that
-//! bits that moved can be told to be another program's.
+//! The tolerance that counts is the one in the sheet: widen or narrow it there. The digest shows
+//! whether any bit changed: within tolerance that is a remark, not a failure. `stage` says what the
+//! artifacts were made by (see `made_by`). `arithmetic` identifies the processor and the C library
+//! that the golden was recorded on, so that changed bits can be traced to another processor or
+//! library.
 
 mod compare;
 mod made_by;
@@ -105,7 +105,7 @@ impl GoldenSheet {
         Self::made(log, arithmetic, &|_, garment| GoldenSurface::of(garment))
     }
 
-    /// The sheet of a run with the places of the golden that it is held against.
+    /// The sheet of a run with the places of the golden that it is compared with.
     pub fn against(golden: &GoldenSheet, log: &RunLog, arithmetic: &str) -> Self {
         Self::made(log, arithmetic, &|title, garment| {
             let known = golden.sections.iter().find(|s| s.title() == title).and_then(|s| s.surface.as_ref());

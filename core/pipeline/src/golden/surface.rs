@@ -3,7 +3,7 @@
 //! A drape may change by centimetres while its area, its box and its strains stay what they were,
 //! so a sheet keeps some hundreds of points of the surface as well. A point is named by its place
 //! in the flat pattern, which no mesh changes, and the sheet's own places are looked up in the
-//! garment that is held against it.
+//! garment that is compared with it.
 //!
 //! Method: the places of a panel are the first of the golden-ratio sequence of the plane (Roberts
 //! 2018), laid over the panel's box, that lie on it; each panel has a share of [`PLACES`] by its
@@ -28,11 +28,12 @@ const REACH: f64 = 0.01;
 /// Places stand in a sheet in tenths of a millimetre of the pattern, metres.
 const GRAIN: f64 = 1e-4;
 
-/// On a machine of equal arithmetic. Equal code gives equal bits there, so this is only what a
-/// change may do to be a remark.
+/// On a machine of equal arithmetic. Equal code gives equal bits there, so a difference comes from
+/// a change of the code; up to this limit it is a remark, not a failure.
 const HERE: PlaceTolerance = PlaceTolerance { within_mm: 0.2, most_mm: 1.0 };
 /// On a machine of other arithmetic. Folds and friction have many states of rest: sums that are
-/// rounded otherwise moved the vest by 1.2 mm at 95 % and 9 mm at most (docs/reference/goldens.md).
+/// rounded differently moved the vest by 1.2 mm at 95 % and 9 mm at most
+/// (docs/reference/goldens.md).
 const ELSEWHERE: PlaceTolerance = PlaceTolerance { within_mm: 3.0, most_mm: 20.0 };
 /// Half a unit of the last place that a sheet shows of each coordinate, together, mm.
 const SHEET_ROUNDING: f64 = 0.01;
@@ -40,9 +41,9 @@ const SHEET_ROUNDING: f64 = 0.01;
 /// How far the places of a surface may move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaceTolerance {
-    /// 95 % of the places move by no more, mm.
+    /// 95 % of the places move by at most this, mm.
     pub within_mm: f64,
-    /// No place moves by more, mm.
+    /// No place moves by more than this, mm.
     pub most_mm: f64,
 }
 

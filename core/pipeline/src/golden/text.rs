@@ -165,7 +165,7 @@ impl SheetReader {
         Ok(())
     }
 
-    /// The section at work.
+    /// The section that is being read: the last one so far.
     fn section(&mut self) -> Result<&mut SheetSection, String> {
         self.sheet.sections.last_mut().ok_or_else(|| "a measure stands before the first heading".to_owned())
     }

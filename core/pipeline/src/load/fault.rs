@@ -11,7 +11,7 @@ use std::ops::Range;
 /// The most faults that are drawn with their source; a file with more has one cause for most.
 const MAX_DRAWN: usize = 50;
 
-/// Lines longer than this, bytes, are not drawn: nobody could read them.
+/// Lines longer than this, bytes, are not drawn: they would be unreadable.
 const MAX_LINE: usize = 2000;
 
 /// A place in the pipeline's text, with what is to be said of it.

@@ -2,9 +2,9 @@
 //!
 //! A port is fed by the one *live* maker of its kind. A stage that takes a kind and gives the same
 //! kind supersedes what it took; a stage that makes a kind of something remade supersedes what was
-//! made of its former state; a port that wants the original goes back to the first maker, one that
-//! wants what was sewn goes back before the flatteners. Where two makers are live the file must say
-//! `from` (a table section, which cannot, takes the latest). Every clash is a fault with both ends
+//! made of its former state; a port for the original goes back to the first maker, one for the sewn
+//! garment goes back before the flatteners. Where two makers are live the file must say `from` (a
+//! table section, which cannot, takes the latest). Every clash is a fault with both ends
 //! underlined.
 //!
 //! Cost: stages times kinds times the number of live makers of one kind, which is one in all but

@@ -10,10 +10,10 @@
 //! 4. `graph`: each input port finds the stage that feeds it; then `by_place` gives stages what
 //!    follows from their place.
 //!
-//! The settings of a quality that is asked for and `--set` overrides are spliced into the text
-//! before step 1, so that they pass the same checks; `qualities` are checked beside the file.
-//! `origin` shows what is wrong where the user wrote it: in the file or in the option.
-//! `unused` says what a clean file does not use.
+//! The settings of a requested quality and the `--set` overrides are spliced into the text before
+//! step 1, so that they pass the same checks; `qualities` are checked beside the file. `origin`
+//! shows what is wrong where the user wrote it: in the file or in the option. `unused` lists the
+//! stages of a file without faults whose results nothing uses.
 //!
 //! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
 //!

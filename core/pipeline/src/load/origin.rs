@@ -45,7 +45,7 @@ pub(super) struct TextChanges {
 }
 
 impl TextChanges {
-    /// Notes that `at` was replaced by a text of the length `is`, in which the region stands.
+    /// Notes that `at` was replaced by a text of length `is`, which contains the region.
     pub(super) fn note(&mut self, at: &Range<usize>, is: usize, region: InsertedText) {
         let moved = |x: usize| if x >= at.end { x + is - at.len() } else { x.min(at.start) };
         for r in &mut self.regions {

@@ -128,7 +128,8 @@ impl Edit {
     }
 }
 
-/// What one override does to the text, and where in its value the value proper begins.
+/// The edit of the text for one override, and the offset at which the user's value begins within
+/// the inserted text.
 fn edit(text: &str, tree: &ValueTree, registry: &Registry, given: Given<'_>) -> Result<(Edit, usize), Fault> {
     let o = given.o;
     let value = parse(&o.value).map_err(|e| bad_value(given, &e))?;
@@ -153,7 +154,7 @@ fn bad_value(given: Given<'_>, e: &Fault) -> Fault {
     given.fault(&message, from..from + o.value.len()).hint(hint)
 }
 
-/// One override on its way down the tree.
+/// One override, while its path is followed down the tree.
 struct OverrideWalk<'a> {
     text: &'a str,
     registry: &'a Registry,
@@ -163,7 +164,7 @@ struct OverrideWalk<'a> {
 }
 
 impl OverrideWalk<'_> {
-    /// The first segment: a field of the file.
+    /// The edit for a path whose first segment is a field of the file.
     fn top(&self, tree: &ValueTree, sections: &[Draft], stages: &[Draft]) -> Result<Edit, Fault> {
         let field = self.segments.first().copied().unwrap_or("");
         let known = read::top_level(self.registry);
@@ -232,7 +233,7 @@ impl OverrideWalk<'_> {
             None if i + 1 == self.segments.len() => Ok(Edit::insert(*inside, entries, field, self.value)),
             None => {
                 let whole = self.segments[..=i].join(".");
-                let fault = self.fault(i, format!("the file gives no `{field}` to change a part of"));
+                let fault = self.fault(i, format!("the file has no `{field}`"));
                 Err(fault.hint(format!("set all of it: `{}`", self.given.written(&whole, "..."))))
             }
         }

@@ -48,7 +48,7 @@ impl Pipeline {
         needed_for(&self.nodes, sinks)
     }
 
-    /// The line of the file on which a stage stands, from 1.
+    /// The line of a stage in the file, from 1.
     pub fn line(&self, node: &Node) -> usize {
         LineStarts::of(&self.text).position(&self.text, node.place.start).0
     }

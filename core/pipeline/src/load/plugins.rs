@@ -30,7 +30,7 @@ pub(super) fn read(text: &str, value: &ValueTree, faults: &mut Vec<Fault>) -> Ve
     let bad = |message: &str, span: &Range<usize>| Fault::new("bad_value", message).at(span, "");
     let ValueShape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
         if !value.is_broken {
-            faults.push(bad("`plugins` wants a list of texts", &value.span));
+            faults.push(bad("`plugins` must be a list of texts", &value.span));
         }
         return Vec::new();
     };
@@ -43,11 +43,14 @@ type Wrong = (String, Range<usize>);
 
 fn one(text: &str, value: &ValueTree) -> Result<PluginUse, Wrong> {
     let wrong = || {
-        ("`plugins` wants text in quotes, or (file: \"...\", blake3: \"...\")".to_owned(), value.span.clone())
+        (
+            "`plugins` must be text in quotes, or (file: \"...\", blake3: \"...\")".to_owned(),
+            value.span.clone(),
+        )
     };
     let words = |tree: &ValueTree| -> Result<String, Wrong> {
         let parsed = text.get(tree.span.clone()).and_then(|t| ron_options().from_str(t).ok());
-        parsed.ok_or_else(|| ("`plugins` wants text in quotes".to_owned(), tree.span.clone()))
+        parsed.ok_or_else(|| ("`plugins` must be text in quotes".to_owned(), tree.span.clone()))
     };
     let ValueShape::Group { name: None, bracket: Bracket::Round, entries, .. } = &value.shape else {
         return Ok(PluginUse { file: words(value)?, blake3: None, span: value.span.clone() });
@@ -71,7 +74,7 @@ fn one(text: &str, value: &ValueTree) -> Result<PluginUse, Wrong> {
 fn digest(text: String, at: &ValueTree) -> Result<String, Wrong> {
     match text.len() == DIGITS && text.chars().all(|c| c.is_ascii_hexdigit()) {
         true => Ok(text),
-        false => Err((format!("`blake3` wants {DIGITS} hexadecimal digits"), at.span.clone())),
+        false => Err((format!("`blake3` must be {DIGITS} hexadecimal digits"), at.span.clone())),
     }
 }
 

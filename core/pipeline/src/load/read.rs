@@ -17,7 +17,7 @@ pub(super) const GENERIC: [&str; 2] = ["id", "from"];
 /// Top-level fields that are no sections.
 pub(super) const PLAIN: [&str; 4] = ["name", "stages", "plugins", "qualities"];
 
-/// The most elements of one list or map whose faults are told.
+/// The most elements of one list or map whose faults are reported.
 const MAX_ELEMENTS: usize = 20;
 
 /// The longest id: it becomes a folder's name.
@@ -78,7 +78,7 @@ type Fields<'t> = BTreeMap<String, (Range<usize>, &'t ValueTree)>;
 struct PipelineReader<'a> {
     text: &'a str,
     registry: &'a Registry,
-    /// True where stages may be missing since their plugin is refused.
+    /// True where stages may be missing because their plugin is refused.
     lacks_plugin: bool,
     faults: &'a mut Vec<Fault>,
     /// The stages read so far, by which those of one name are told apart.
@@ -143,7 +143,7 @@ impl PipelineReader<'_> {
         }
         let parsed = ron_options().from_str(self.at(&value.span)).ok();
         if parsed.is_none() {
-            self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
+            self.fault("bad_value", format!("`{field}` must be text in quotes"), &value.span);
         }
         parsed
     }
@@ -153,7 +153,7 @@ impl PipelineReader<'_> {
             if list.is_broken {
                 return vec![Draft::unknown(&list.span)];
             }
-            self.fault("bad_value", "`stages` wants a list, `[Otsu(), ...]`", &list.head());
+            self.fault("bad_value", "`stages` must be a list, `[Otsu(), ...]`", &list.head());
             return vec![Draft::unknown(&list.span)];
         };
         if entries.is_empty() {
@@ -253,7 +253,8 @@ impl PipelineReader<'_> {
         let picked = pick(&fitting, &self.before, from).or_else(|| self.registry.card(name));
         let (fault, meant) = match (picked, section) {
             (Some(card), Some((field, role))) if !names.contains(&name) => {
-                let message = format!("`{field}` wants a {}, `{name}` is a {}", noun(role), noun(card.role));
+                let message =
+                    format!("`{field}` must be a {}, `{name}` is a {}", noun(role), noun(card.role));
                 let known = (!names.is_empty()).then(|| format!("there is {}", toile_core::quoted(&names)));
                 (Fault::new("wrong_role", message).hint(known), names.first().copied())
             }
@@ -426,7 +427,7 @@ impl PipelineReader<'_> {
         let args: Vec<String> = clean.map(|(k, v)| format!("{k}: {}", self.at(v))).collect();
         match self.registry.make(card, &format!("({})", args.join(", "))) {
             Ok(stage) => draft.stage = Some(stage),
-            // What is missing is the value whose fault is told.
+            // The missing value is one whose fault is already reported.
             Err(_) if !draft.wrong.is_empty() => {}
             Err(reason) => {
                 self.fault("bad_value", format!("`{}` cannot be made: {reason}", draft.name), &draft.place);

@@ -16,7 +16,7 @@ use toile_core::{Arity, Cancel, OutPort, PortValue, StageError};
 /// What one call may claim: memory for outputs, bytes.
 pub const MAX_OUTPUT_BYTES: u64 = 4 << 30;
 
-/// What a plugin tells while it works; served by the thread that waits for it.
+/// What a plugin reports while it works; handled by the thread that waits for it.
 pub(super) enum Message {
     Progress(f64, String),
     Note(String),
@@ -38,7 +38,7 @@ pub(super) struct PluginLoop {
     pub(super) done: Sender<()>,
 }
 
-// Its body may be called from any thread, by the rules of the border.
+// Its body may be called from any thread, by the rules of the plugin ABI.
 unsafe impl Send for PluginLoop {}
 
 /// Why a plugin's call failed, in its own words.
@@ -68,7 +68,7 @@ pub(super) struct CallState {
 #[derive(Clone)]
 struct OutputMemory {
     memory: Arc<Vec<u128>>,
-    /// As many bytes as were asked for.
+    /// As many bytes as were requested.
     bytes: usize,
 }
 
@@ -195,8 +195,8 @@ impl CallState {
         self.keep(port, name, artifact)
     }
 
-    /// Lists that lie in memory of `alloc` are taken as they are: by the rules of the border nobody
-    /// writes to what was given.
+    /// Lists that lie in memory of `alloc` are taken as they are: by the rules of the plugin ABI
+    /// nothing writes to what was given.
     fn own_blocks(&self, record: &mut Record<'_>) {
         let blocks = locked(&self.blocks);
         for field in &mut record.fields {
@@ -209,7 +209,7 @@ impl CallState {
     }
 
     /// # Safety
-    /// The collider obeys the rules of the border.
+    /// The collider obeys the rules of the plugin ABI.
     unsafe fn give_collider(&self, port: u32, collider: *const abi::Collider) -> Result<(), String> {
         let library: Arc<dyn Send + Sync> = self.library.clone();
         let owner = self.library.words();
@@ -335,8 +335,8 @@ unsafe extern "C" fn parallel_for(
     let (done, wait) = channel();
     let sent = unsafe { call(ctx) }.messages.send(Message::Loop(PluginLoop { count, data, body, done }));
     if sent.is_err() || wait.recv().is_err() {
-        // Nobody waits for this call any more: it may run to its end, but not on the program's
-        // threads. A loop that was sent and then dropped has not been begun.
+        // The program no longer waits for this call: it may run to its end, but not on the
+        // program's threads. A loop that was sent and then dropped has not started.
         (0..count).for_each(|i| unsafe { body(data, i) });
     }
 }

@@ -129,7 +129,7 @@ fn by_kind(value: &str, doc: &ParamDoc) -> Result<(), ParamFault> {
     }
 }
 
-/// The fault of a value that a plugin refused without a word.
+/// The fault of a value that a plugin refused without a message.
 pub(super) fn out_of_range(value: &str, doc: &ParamDoc) -> Option<String> {
     value.parse().ok().and_then(|x| check_number(x, doc).err())
 }
@@ -164,7 +164,7 @@ unsafe fn read_out(p: &abi::Port) -> Result<OutPort, String> {
 unsafe fn kind(p: &abi::Port) -> Result<Kind, String> {
     let word = unsafe { text(p.kind)? };
     match kind_named(word) {
-        Some(kind) if kind == RunLog::KIND => Err("a run log does not cross to plugins".into()),
+        Some(kind) if kind == RunLog::KIND => Err("a run log cannot be passed to plugins".into()),
         Some(kind) => Ok(kind),
         None => Err(format!("there is no kind `{word}`")),
     }

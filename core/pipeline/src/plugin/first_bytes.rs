@@ -1,5 +1,5 @@
-//! What a file is that is named as a plugin and is none for this machine, told by its first bytes:
-//! a library for another system or another processor, a program, an archive, a text.
+//! Names what a file that is no plugin for this machine is, by its first bytes: a library for
+//! another system or another processor, a program, an archive, a text.
 //!
 //! The system's own words for such a file are "invalid ELF header" at best. Source: System V ABI,
 //! chapter 4 (ELF); PE Format; Mach-O Programming Topics. Cost: a look at some hundred bytes.

@@ -36,8 +36,8 @@ const STACK: usize = 8 << 20;
 /// Runs of plugins' stages that are waited for.
 static WAITED_FOR: AtomicUsize = AtomicUsize::new(0);
 
-/// How long a program that asks everything to stop has to wait until it is told which plugin does
-/// not; nothing while no plugin is at work.
+/// How long a program that asks everything to stop waits before the plugin that does not stop is
+/// named; zero while no plugin runs.
 pub fn patience() -> Duration {
     if WAITED_FOR.load(Ordering::SeqCst) > 0 { GRACE } else { Duration::ZERO }
 }
@@ -71,7 +71,7 @@ struct ForeignObject {
     stage: *mut c_void,
 }
 
-// Its functions may be called from any thread, by the rules of the border.
+// Its functions may be called from any thread, by the rules of the plugin ABI.
 unsafe impl Send for ForeignObject {}
 unsafe impl Sync for ForeignObject {}
 
@@ -126,7 +126,7 @@ impl ForeignType {
         let told = call.take_failure().unwrap_or_default();
         let message = match told.message.as_str() {
             "" => card::out_of_range(value, doc)
-                .unwrap_or_else(|| format!("`{}` wants a {}", doc.name, doc.kind)),
+                .unwrap_or_else(|| format!("`{}` must be a {}", doc.name, doc.kind)),
             message => message.to_owned(),
         };
         let reason = if told.about.is_empty() { message.clone() } else { told.about };
@@ -264,7 +264,8 @@ struct RunNames {
 
 impl RunNames {
     fn host(&self, call: &CallState) -> abi::Host {
-        // The plugin's thread is no thread of the pool, and would count wrongly.
+        // The plugin's thread is no thread of the pool, so it would report a wrong number of
+        // threads.
         abi::Host { threads: self.threads, ..call.host() }
     }
 }
@@ -296,13 +297,13 @@ impl Stage for ForeignStage {
                 let _inside = long(plugin, &stage);
                 object.run(&own, &inputs, &names)
             };
-            // Nothing of the plugin's may be freed by this thread after the program was told.
+            // This thread must free all that is the plugin's before it reports that it is done.
             drop((object, inputs));
             own.tell_done(status);
         };
         let thread =
             std::thread::Builder::new().name(self.card.name.to_owned()).stack_size(STACK).spawn(work);
-        thread.map_err(|e| StageError::internal(format!("there is no thread for a plugin: {e}")))?;
+        thread.map_err(|e| StageError::internal(format!("cannot start a thread for a plugin: {e}")))?;
         let status = self.serve(&messages, cx)?;
         of.done(status, &call)?;
         call.outputs()
@@ -339,7 +340,7 @@ impl ForeignStage {
         let (of, name) = (self.object.of.library.words(), self.card.name);
         let message = format!("{of} did not stop within {} s of being asked", GRACE.as_secs());
         StageError::new(ErrorCode::Cancelled, message)
-            .hint(format!("its stage `{name}` does not ask often enough whether to stop; it was left behind"))
+            .hint(format!("its stage `{name}` does not check often enough whether to stop; it goes on working in the background"))
     }
 }
 

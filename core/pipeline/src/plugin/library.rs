@@ -183,11 +183,11 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     }
 }
 
-/// Opens a library with all functions that it calls: one that is not there would end the program
-/// where it is called first.
+/// Opens a library and resolves all functions that it calls: a missing one would otherwise end the
+/// program at its first call.
 ///
 /// # Safety
-/// The library is trusted to obey the rules of the border.
+/// The library is trusted to obey the rules of the plugin ABI.
 #[cfg(unix)]
 unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
     use libloading::os::unix::{Library as Opened, RTLD_LOCAL, RTLD_NOW};
@@ -197,7 +197,7 @@ unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
 /// Opens a library; this system looks for all functions at once.
 ///
 /// # Safety
-/// The library is trusted to obey the rules of the border.
+/// The library is trusted to obey the rules of the plugin ABI.
 #[cfg(not(unix))]
 unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
     unsafe { Library::new(file) }
@@ -206,7 +206,7 @@ unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
 /// Loads `file`, or its copy where it is loaded `from` one.
 ///
 /// # Safety
-/// The library is trusted to obey the rules of the border.
+/// The library is trusted to obey the rules of the plugin ABI.
 unsafe fn open((from, file): (&Path, &Path), symbols: &[Vec<u8>], digest: Digest) -> Result<Plugin, Why> {
     let library = unsafe { opened(from) }.map_err(|e| worded(&e, from, file))?;
     let declared = symbols
@@ -244,7 +244,7 @@ unsafe fn handshake(declared: *const abi::Declaration) -> Result<abi::Declaratio
     let (major, minor) = unsafe { ((*declared).major, (*declared).minor) };
     if major != abi::MAJOR || minor > abi::MINOR {
         let spoken = format!(
-            "it speaks ABI {major}.{minor}, this program speaks {0}.0 to {0}.{1}",
+            "it is built for ABI {major}.{minor}, this program supports {0}.0 to {0}.{1}",
             abi::MAJOR,
             abi::MINOR
         );

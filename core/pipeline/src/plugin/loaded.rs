@@ -6,8 +6,8 @@ use toile_core::PluginId;
 
 /// A library that is loaded.
 ///
-/// It stays so until the program ends: threads of its own may outlive its last object, and code
-/// that is taken from under a thread ends the program.
+/// It stays loaded until the program ends: its own threads may run longer than its last object
+/// lives, and unloading code that a thread runs would crash the program.
 #[derive(Debug)]
 pub(super) struct LoadedLibrary {
     id: PluginId,

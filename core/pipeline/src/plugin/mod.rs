@@ -1,8 +1,8 @@
-//! The program's side of plugins: `first_bytes` tells what a file is that is none for this machine,
-//! `whole` looks whether a library is whole, `library` loads and checks a plugin,
-//! `refused_by_system` words why the system does not load one, `loaded` keeps it, `card` reads its
-//! stages' cards, `foreign` is its stage behind the [`Stage`](toile_core::Stage) trait, `call` what
-//! the program offers during a call.
+//! The program's side of plugins: `first_bytes` names what a file is that is no plugin for this
+//! machine, `whole` checks that a library is complete, `library` loads and checks a plugin,
+//! `refused_by_system` explains why the system does not load one, `loaded` keeps it, `card` reads
+//! its stages' cards, `foreign` is its stage behind the [`Stage`](toile_core::Stage) trait, `call`
+//! what the program offers during a call.
 //!
 //! What both sides share, and the types that cross, are in [`toile_core::plugin`].
 

@@ -1,7 +1,7 @@
 //! A stage's artifacts as ordinary files: `stages/STAGE/PANEL.png`.
 //!
-//! Artifacts write themselves; pictures and tables are encoded here, by libraries that whoever
-//! makes them does without.
+//! Artifacts write themselves; pictures and tables are encoded here, so that the crates that make
+//! them do not need the encoding libraries.
 
 use super::typed;
 use image::ImageFormat;

@@ -16,7 +16,7 @@ use toile_core::{Cancel, Contract, Listener, Node, Remarks};
 pub struct Outlook {
     /// The stage's id.
     pub stage: String,
-    /// Why nothing asked for needs it, if so.
+    /// Why no requested result needs it, if so.
     pub skipped: Option<String>,
     /// Every run of it: the entry (empty where it is not mapped) and, where it would run again,
     /// why. Causes end with the inputs that are as before.

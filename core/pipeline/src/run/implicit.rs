@@ -9,9 +9,9 @@ use toile_core::{Arity, Card, Feed, InPort, Node, Registry, Stage};
 /// Adds every implicit stage of the registry whose inputs the pipeline makes and which it does not
 /// name itself.
 ///
-/// It is given what is written: the last of a kind on which a writer depends, and only where there
-/// is none the last of all. It stands before the stages that report on the run, so that they see
-/// its result, as far as what it takes is made before them.
+/// Its inputs are the artifacts that are written: the last one of a kind that a writer depends on,
+/// or, if there is none, the last of that kind. It is placed before the stages that report on the
+/// run, so that their reports include its result, unless its inputs are made after them.
 pub fn add_implicit(pipeline: &mut Pipeline, registry: &Registry) {
     for make in registry.implicit() {
         let stage = make();
@@ -45,8 +45,8 @@ fn written(pipeline: &Pipeline) -> Vec<bool> {
     pipeline.needed_for(&writers)
 }
 
-/// The last port that makes a kind; the first where the original is wanted, and what flatteners
-/// were given where what was sewn is.
+/// The last port that makes the kind of `wanted`; the first if `wanted` is for the original; the
+/// input of the flatteners if it is for the sewn garment.
 fn maker(pipeline: &Pipeline, wanted: &InPort, written: &[bool]) -> Option<Feed> {
     let makes = |(node, n): (usize, &Node)| {
         let port = n.card.outputs.iter().position(|o| o.kind == wanted.kind)?;
@@ -124,7 +124,8 @@ mod tests {
         }
     }
 
-    /// The vest with these stages at its end: what feeds the judgement, and what stands around it.
+    /// The vest with these stages at its end: the input of the judgement, and the order of the
+    /// stages.
     fn judged(end: &str) -> (String, Vec<String>) {
         let mut registry = kit::registry();
         registry.add::<LaidFlat>();

@@ -4,9 +4,9 @@
 //! A stage that improves (`toile_core::Stage::improves`) gives back the kinds that it takes: a
 //! garment in another pose, on a finer mesh, at rest again. The result that it improves on is the
 //! last garment at rest that a stage made which does not improve. All improving stages since then
-//! are undone together, for none of them leaves a result by itself: a garment in another pose is
-//! good once it has settled. Each of them then passes on what it was given, and the run goes on
-//! from the first of them.
+//! are undone together, because none of them gives a result by itself: a garment in another pose is
+//! a result only once it is at rest again. Each of them then passes on its input, and the run
+//! continues from the first of them.
 
 use super::node::WORK;
 use super::steps::{PipelineRun, RanStage, StageOutcome};
@@ -17,8 +17,8 @@ use toile_core::artifact::{ArtifactType, Garment, Kind};
 use toile_core::{ErrorCode, Event, Feed, Node, PortValue, Remarks};
 
 impl PipelineRun<'_> {
-    /// Undoes what failed at stage `index`, where it improves on a result that is at rest; the
-    /// runner then goes on behind the steps that are left.
+    /// Undoes the failed stage `index` if it improves on a result that is at rest; the runner then
+    /// continues after the remaining steps.
     ///
     /// Errors: the failure itself, where there is no such result, or where the user asked to stop.
     pub(super) fn undo(&mut self, index: usize, failure: RunError) -> Result<(), RunError> {
@@ -74,7 +74,7 @@ impl PipelineRun<'_> {
         Ok(self.base(last)?.map(|base| (base, last)))
     }
 
-    /// Has the improving stages between `base` and `last` pass on what they are given, and forgets
+    /// Has the improving stages between `base` and `last` pass on what they are given, and drops
     /// all steps from the first of them.
     pub(super) fn turn_back(&mut self, base: usize, last: usize, why: String) {
         let between: Range<usize> = base + 1..last + 1;
@@ -88,7 +88,7 @@ impl PipelineRun<'_> {
         self.steps.truncate(first);
     }
 
-    /// Tells what the steps from `first` on remarked, which ran unheard.
+    /// Reports the notes and warnings of the steps from `first` on, which ran without a listener.
     pub(super) fn tell_again(&self, first: usize) {
         for (step, node) in self.steps.iter().zip(&self.pipeline.nodes).skip(first) {
             let Some(RanStage { remarks: Remarks { notes, warnings }, .. }) = step.ran() else { continue };
@@ -97,7 +97,7 @@ impl PipelineRun<'_> {
         }
     }
 
-    /// The result of an undone stage: what it was given of the kinds that it makes.
+    /// The result of an undone stage: its inputs of the kinds that it makes.
     ///
     /// Errors: those of bringing that into memory.
     pub(super) fn passed_on(&mut self, index: usize) -> Result<RanStage, RunError> {
@@ -161,7 +161,8 @@ fn gives_garment(node: &Node) -> bool {
     node.card.outputs.iter().any(|o| o.kind == Garment::KIND)
 }
 
-/// What feeds a stage's last port of that kind: the latest made, where another one wants the first.
+/// What feeds a stage's last port of that kind: the latest made, even where another port takes the
+/// first.
 fn feed_of(node: &Node, kind: Kind) -> Option<&Feed> {
     let ports = node.card.inputs.iter().zip(&node.inputs).rev();
     let mut feeds = ports.filter(|(port, _)| port.kind == kind && !port.original).map(|(_, feed)| feed);

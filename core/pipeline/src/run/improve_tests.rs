@@ -1,4 +1,4 @@
-//! A garment at rest outlives what fails to improve on it.
+//! If an improving stage fails, the garment at rest that it was given is kept.
 #![allow(clippy::unwrap_used)]
 
 use super::{RunError, RunOptions, RunResult, run};

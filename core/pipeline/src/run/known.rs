@@ -110,7 +110,7 @@ impl PipelineRun<'_> {
         RanStage { outputs, wall_s: 0.0, cached, figures, remarks, cost: None }
     }
 
-    /// Takes off what an earlier stage has told in the same words.
+    /// Removes notes and warnings that an earlier stage gave in the same words.
     fn told_before(&self, remarks: &mut Remarks) {
         let before: Vec<&Remarks> =
             self.steps.iter().filter_map(StageOutcome::ran).map(|ran| &ran.remarks).collect();

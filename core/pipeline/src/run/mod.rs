@@ -1,4 +1,4 @@
-//! Runs a pipeline: only what the asked outputs need, in file order, sets in parallel.
+//! Runs a pipeline: only what the requested outputs need, in file order, sets in parallel.
 
 mod exports;
 mod forecast;
@@ -34,12 +34,12 @@ use toile_core::RunLog;
 use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles};
 use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, Remarks, StageError, panics};
 
-/// What is asked of a run.
+/// Options of a run.
 #[derive(Debug, Clone, Default)]
 pub struct RunOptions {
     /// Stop after this stage (its id): only it and what it needs are run.
     pub until: Option<String>,
-    /// Stages (ids) that are run though nothing asked for depends on them.
+    /// Ids of stages that are run although no requested result depends on them.
     pub also: Vec<String>,
     /// Give every stage's artifacts as files as well.
     pub keep: bool,
@@ -47,11 +47,12 @@ pub struct RunOptions {
     pub cache: Option<Arc<Cache>>,
     /// Takes all files that stages read, or tried to, whether the run comes to its end or not.
     pub reads: Option<Reads>,
-    /// Takes what a run that fails has made until then, for a look.
+    /// Receives what a failed run had made until then, for inspection.
     pub so_far: Option<SoFar>,
     /// Measures what stages take; none measures nothing but wall time.
     pub meter: Option<Arc<dyn Meter>>,
-    /// Says what stages were expected to take, for the record and the report; none says nothing.
+    /// Predicts what stages take, for the record and the report; without it they hold no
+    /// prediction.
     pub expect: Option<Arc<dyn Expect>>,
 }
 
@@ -75,7 +76,7 @@ pub struct RunResult {
 /// A stage's failure with its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunError {
-    /// The stage's id; empty where it is of none of the pipeline's.
+    /// The stage's id; empty where the error is not a stage's.
     pub stage: String,
     /// The panel at work, empty for a stage that is not mapped.
     pub entry: String,
@@ -195,7 +196,7 @@ fn unbroken<T>(node: &Node, work: impl FnOnce() -> Result<T, RunError>) -> Resul
     })
 }
 
-/// The writers' files and those of stages whose artifacts were asked for.
+/// The writers' files and those of stages whose artifacts were requested.
 fn files(run: &mut PipelineRun<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, RunError> {
     let mut files: Vec<OutputFile> = written(run)?.into_iter().flat_map(|(_, f)| f.0).collect();
     let nodes = run.pipeline.nodes.iter().enumerate();
@@ -246,7 +247,7 @@ pub fn plan(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Option<Stri
     let needed = pipeline.needed_for(&asked);
     let reason = || match &options.until {
         Some(until) => format!("not needed until {until}"),
-        None => "nothing asked for depends on it".to_owned(),
+        None => "no requested result depends on it".to_owned(),
     };
     Ok(needed.into_iter().map(|needed| (!needed).then(reason)).collect())
 }
@@ -269,8 +270,8 @@ fn sound(pipeline: &Pipeline) -> Result<(), RunError> {
     Ok(())
 }
 
-/// The stages that something asks for: `until`, or all that give files (with the judgement), or,
-/// in a pipeline without writers, all that nobody consumes.
+/// The stages whose results are requested: `until`, or all that give files (with the judgement),
+/// or, in a pipeline without writers, all whose results no stage takes.
 fn sinks(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<usize>, RunError> {
     if let Some(until) = &options.until {
         return match pipeline.nodes.iter().position(|n| n.id == *until) {

@@ -15,8 +15,8 @@ pub(super) type EntryFailure = (String, StageError);
 /// The figure that says how much work a stage took: steps over all of its vertices.
 pub(super) const WORK: &str = "work";
 
-/// The entry that people take a photo of first; the back is often its mirror image, and fails with
-/// it.
+/// The entry whose error is reported first: the back is often the mirror image of the front, and
+/// fails with it.
 const FRONT: &str = "front";
 
 /// Runs a stage for some entries, in parallel; the front's failure counts, else the first in their
@@ -56,8 +56,8 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
     }
 }
 
-/// The files that a plugin's stage is given by name: it reads them on its own side of the border,
-/// and one built for ABI 1.0 cannot tell which.
+/// The files that a plugin's stage is given by name: it reads them on its own side of the plugin
+/// ABI, and one built for ABI 1.0 cannot say which.
 fn named_files(node: &Node, cx: &Context) -> Vec<(String, Option<Digest>)> {
     if node.card.plugin.is_none() {
         return Vec::new();

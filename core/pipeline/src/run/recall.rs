@@ -55,7 +55,7 @@ impl PipelineRun<'_> {
     /// Runs a stage again whose result is known but not to be had.
     fn remake(&mut self, index: usize, entries: &[String]) -> Result<(), RunError> {
         let node = &self.pipeline.nodes[index];
-        // What it said came from the cache already.
+        // The cache has already given its notes and warnings.
         let cx = self.context(node, Arc::new(()));
         let started = Instant::now();
         let (made, _) = self.make(index, entries, &cx)?;

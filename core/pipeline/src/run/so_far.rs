@@ -21,7 +21,7 @@ pub(super) fn leave(run: &mut PipelineRun<'_>, options: &RunOptions, error: &Run
     let Some(sink) = options.so_far.as_ref().filter(|_| error.error.code != ErrorCode::Cancelled) else {
         return;
     };
-    // Whatever goes wrong here, the error that the user is told is the first.
+    // If something fails here, the user still gets the first error.
     let files = catch_unwind(AssertUnwindSafe(|| files(run, options.keep, error))).unwrap_or_default();
     *sink.lock().unwrap_or_else(PoisonError::into_inner) = files;
 }

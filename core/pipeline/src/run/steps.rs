@@ -59,8 +59,8 @@ pub(super) struct PipelineRun<'a> {
     pub(super) meter: Option<&'a dyn Meter>,
     pub(super) expect: Option<&'a dyn Expect>,
     pub(super) steps: Vec<StageOutcome>,
-    /// Improving stages that pass on what they are given; the one that failed with what to tell the
-    /// user.
+    /// Improving stages that pass on what they are given; the one that failed with what to report
+    /// to the user.
     pub(super) undone: BTreeMap<usize, Option<String>>,
     /// What the stage that failed had come to.
     pub(super) so_far: Option<PortValue>,
@@ -113,8 +113,8 @@ impl PipelineRun<'_> {
         self.pipeline.nodes.iter().zip(&self.steps).filter_map(cost).collect()
     }
 
-    /// What a stage was expected to take, where it ran whole. A run that found in the cache all
-    /// that a cache can hold is no news, and asks nobody.
+    /// What a stage was expected to take, if it ran whole. Nothing is predicted for a run that
+    /// found in the cache all that a cache can hold, because it measures nothing new.
     pub(super) fn expected(&self, index: usize) -> Option<Predicted> {
         let ran_whole =
             |step: &StageOutcome| matches!(step, StageOutcome::Ran(RanStage { cost: Some(_), .. }));
@@ -156,7 +156,7 @@ impl PipelineRun<'_> {
         made.map(|made| (made, used)).map_err(|e| located(self.pipeline, node, e))
     }
 
-    /// Tells whoever asked which files were read.
+    /// Reports which files were read, where that is requested.
     pub(super) fn note_reads(&self, files: impl IntoIterator<Item = (String, Option<Digest>)>) {
         if let Some(reads) = self.reads {
             let full = files.into_iter().map(|(path, hash)| (self.pipeline.base.join(path), hash));

@@ -1,4 +1,5 @@
-//! What a pipeline without faults does not use: likely a slip, and no reason not to run.
+//! Warnings about what a pipeline without faults does not use: probably a mistake, but no reason
+//! not to run.
 
 use crate::load::words::{a, list};
 use crate::load::{Fault, Faults, Pipeline, parse};
@@ -20,7 +21,8 @@ impl Pipeline {
         (!found.is_empty()).then(|| self.faults(found))
     }
 
-    /// Stages that nobody reads from and that write nothing, beside others that do write something.
+    /// Stages whose results no stage takes and that write nothing, in a pipeline in which others
+    /// write something.
     fn unused(&self) -> Vec<Fault> {
         if !self.nodes.iter().any(|n| gives(&n.card, OutputFiles::KIND)) {
             return Vec::new();

@@ -14,9 +14,9 @@ use std::collections::BTreeMap;
 
 /// Stops this near to each other belong together, metres.
 const NEAR: f64 = 2e-3;
-/// As are those this share of the side apart.
+/// Stops also belong together if they are no farther apart than this share of the side.
 const NEAR_SHARE: f64 = 0.01;
-/// Rounds after which seams are held to divide each other without end.
+/// Rounds after which seams count as dividing each other without end.
 const ROUNDS: usize = 100;
 /// Cuts of all edges together.
 const MOST_CUTS: usize = 10_000;
@@ -36,7 +36,7 @@ struct EdgeCut {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ChainLink<'a> {
     pub edge: &'a EdgeRef,
-    /// Which of the parts between its cuts, from its start.
+    /// Number of the part between its cuts, counted from its start.
     pub part: usize,
     /// Whether the side runs along it from its end to its start.
     pub reversed: bool,

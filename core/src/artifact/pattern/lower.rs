@@ -4,8 +4,8 @@
 //! becomes a named edge of its piece's outline, and each pair of parts a seam. Parts that are sewn
 //! to each other, directly or through others, share one [`Gauge`], so that meshers divide all of
 //! them alike. Layers of pleats are sewn first ([`super::pleats`]). Cost: linear in the length of
-//! the edges, a few milliseconds a piece. Limits: holes keep their edges unsewn; a slit is not cut,
-//! which is told.
+//! the edges, a few milliseconds per piece. Limits: holes keep their edges unsewn; a slit is not
+//! cut, with a warning.
 
 use super::super::{
     Edge, EdgeRef, Gauge, InnerKind, InnerLine, Loop, Outline, Point2, Seam, SeamKind, SewingPlan,
@@ -115,7 +115,7 @@ fn told(gathers: &[Gather<'_>]) -> Option<String> {
     Some(format!("{what} in the ratio {:.3}", ratio(most)))
 }
 
-/// The kind of a seam: matched sides of very different lengths are gathered, which is told.
+/// The kind of a seam: matched sides of very different lengths are gathered, with a note.
 fn kind<'a>(pattern: &Pattern, s: &'a PatternSeam, gathers: &mut Vec<Gather<'a>>) -> SeamKind {
     match s.kind {
         SeamKind::Matched => {}

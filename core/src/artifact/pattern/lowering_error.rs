@@ -12,7 +12,7 @@ pub enum LoweringError {
         /// The seam.
         seam: String,
     },
-    /// An edge that stands on two sides of one seam.
+    /// An edge that is on two sides of one seam.
     Itself {
         /// The seam.
         seam: String,

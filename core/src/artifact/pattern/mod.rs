@@ -41,7 +41,7 @@ impl Pattern {
         self.pieces.iter().find(|p| p.name == name)
     }
 
-    /// The length of a seam's side, metres; an edge that there is none of counts as nothing.
+    /// The length of a seam's side, metres; an edge that does not exist counts as 0.
     pub fn side_length(&self, side: &[EdgeUse]) -> f64 {
         let length = |u: &EdgeUse| self.piece(&u.edge.panel)?.path(&u.edge.edge).map(|p| p.length());
         side.iter().filter_map(length).sum()

@@ -1,37 +1,37 @@
 //! Into how many parts an edge is divided, the same for both edges of a seam.
 //!
-//! Method: for a ladder of chord lengths it is measured how far chords of that length leave the
-//! curve, wherever they begin (its *sag*). A mesher takes the longest chord whose sag its edge
-//! length allows; what chords of the shortest rung leave the curve by is the outline's own noise
-//! and asks for no division. Two edges that are sewn together take the longer length and the
-//! greater sag of both, so that both come to the same count without knowing each other. Cost:
-//! linear in the points of the edge times the points under the longest chord, once an edge.
+//! Method: for each length of a geometric sequence of chord lengths, the *sag* is the greatest
+//! distance between the curve and any chord of that length. A mesher takes the longest chord whose
+//! sag its edge length allows. The sag of the shortest chord is the noise of the outline, and is
+//! never a reason to divide. Two edges that are sewn together take the longer length and the
+//! greater sag of both, so that both get the same count although each is divided alone. Cost:
+//! linear in the points of the edge times the points under the longest chord, once per edge.
 
 use crate::artifact::{Point2, Vector2};
 
 /// The share of the edge length by which a chord may leave the curve: outlines stay this true.
 pub const CHORD_TOLERANCE: f64 = 0.02;
 
-/// Rungs of the ladder of chord lengths.
+/// Number of chord lengths in the sequence.
 const RUNGS: usize = 24;
-/// The shortest rung, metres: below it an outline from a photo holds nothing but noise.
+/// The shortest chord length, metres: below it an outline from a photo is noise only.
 const SHORTEST: f64 = 1.5e-3;
-/// From a rung to the next; 24 rungs reach 10 cm.
+/// Ratio of a chord length to the one before it; 24 lengths reach 10 cm.
 const RATIO: f64 = 1.2;
-/// Sag that is this many times that of the shortest rung is still noise.
+/// Sag of up to this many times that of the shortest chord is noise.
 const NOISE: f64 = 1.5;
 /// Points of the curve lie no farther apart than this, metres, or than this share of it.
 const SPACING: (f64, f64) = (5e-4, 5e-5);
-/// Chords shorter than this share of the edge length are a matter of a missed corner, not of the
-/// curve.
+/// Chords shorter than this share of the edge length come from a missed corner, not from the curve.
 const LEAST_SHARE: f64 = 1.0 / 8.0;
 
-/// What two edges that are sewn together agree upon, so that every mesher divides both alike.
+/// Length and sag that two edges that are sewn together share, so that every mesher divides both
+/// alike.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Gauge {
     /// The length that fixes the number of divisions, metres: the longer of both edges.
     pub length: f64,
-    /// For each rung, the farthest that a chord of that length leaves the curve, metres.
+    /// For each chord length, the greatest distance between chord and curve, metres.
     sag: [f64; RUNGS],
 }
 
@@ -79,7 +79,7 @@ impl Gauge {
         if beyond > 1.0 && self.sag.iter().all(|s| s * beyond * beyond <= allowed) {
             return h;
         }
-        // A chord of `h` is judged by the next longer rung.
+        // A chord of `h` is judged by the next longer length of the sequence.
         let covers = (0..RUNGS).find(|&k| rung(k) >= h).unwrap_or(RUNGS - 1);
         match (0..=covers).rev().find(|&k| self.sag[..=k].iter().all(|s| *s <= allowed)) {
             Some(k) => h.min(rung(k)),
@@ -87,7 +87,7 @@ impl Gauge {
         }
     }
 
-    /// The length, then the sag of every rung.
+    /// The length, then the sag of every chord length.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> + use<> {
         std::iter::once(self.length).chain(self.sag)
     }
@@ -98,14 +98,14 @@ impl Gauge {
         Some(Gauge { length: *length, sag: sag.try_into().ok()? })
     }
 
-    /// What is wrong with it: a length or a sag that is none.
+    /// Whether the length and every sag are finite and not negative.
     pub(crate) fn is_sound(&self) -> bool {
         let sound = |x: &f64| x.is_finite() && *x >= 0.0;
         sound(&self.length) && self.sag.iter().all(sound)
     }
 }
 
-/// The length of a rung, metres.
+/// The chord length number `k` of the sequence, metres.
 fn rung(k: usize) -> f64 {
     SHORTEST * RATIO.powi(k as i32)
 }

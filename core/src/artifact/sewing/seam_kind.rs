@@ -111,7 +111,7 @@ impl SeamKind {
     /// Errors: one sentence on a word that is none, or a wrong number of figures.
     pub fn of(word: &str, figures: &[f64]) -> Result<Self, String> {
         let Some(kind) = Self::all().find(|k| k.word() == word) else {
-            return Err(format!("`kind` is \"{word}\", which is none of its words"));
+            return Err(format!("`kind` is \"{word}\", which is not one of its values"));
         };
         kind.with(figures)
             .ok_or_else(|| format!("`kind` is \"{word}\", to which {} figures do not belong", figures.len()))
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn words_and_figures_that_are_none_are_refused() {
         let refused = |word, figures: &[f64]| SeamKind::of(word, figures).unwrap_err();
-        assert_eq!(refused("glued", &[]), "`kind` is \"glued\", which is none of its words");
+        assert_eq!(refused("glued", &[]), "`kind` is \"glued\", which is not one of its values");
         assert_eq!(refused("elastic", &[1.0]), "`kind` is \"elastic\", to which 1 figures do not belong");
         assert_eq!(refused("dart", &[1.0]), "`kind` is \"dart\", to which 1 figures do not belong");
         assert_eq!(

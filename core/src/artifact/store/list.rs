@@ -36,7 +36,7 @@ pub enum MemoryOwner {
     None,
     /// A shared value of this program.
     Own(Arc<dyn Any + Send + Sync>),
-    /// The other side of a plugin's border.
+    /// The other side of the plugin ABI.
     Foreign(Arc<dyn Lend>),
 }
 

@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
         usize::try_from(count).map_err(|_| format!("`{name}` is {count}, which is too many"))
     }
 
-    /// A truth.
+    /// A boolean.
     pub fn flag(&self, name: &str) -> Result<bool, String> {
         Ok(self.one::<u8>(name)? != 0)
     }
@@ -87,12 +87,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A colour picture: `size` (width, height) and three bytes a pixel.
+    /// A colour picture: `size` (width, height) and three bytes per pixel.
     pub fn rgb(&self, name: &str) -> Result<Shared<RgbImage>, String> {
         self.picture(name)
     }
 
-    /// A grey picture: `size` and one byte a pixel.
+    /// A grey picture: `size` and one byte per pixel.
     pub fn grey(&self, name: &str) -> Result<Shared<GrayImage>, String> {
         self.picture(name)
     }

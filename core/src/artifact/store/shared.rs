@@ -5,9 +5,9 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// A value that is shared and never changed, like an [`Arc`], and may be lent by whoever made it.
+/// A value that is shared and never changed, like an [`Arc`], and may be lent by its maker.
 ///
-/// A picture that crosses a plugin's border is not copied: it stays where it was made, and is freed
+/// A picture that crosses the plugin ABI is not copied: it stays where it was made, and is freed
 /// there once its last user is gone.
 pub struct Shared<T: Default>(Arc<Inner<T>>);
 

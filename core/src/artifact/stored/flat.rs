@@ -222,5 +222,5 @@ pub(super) fn word<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'st
 pub(super) fn value<T: Copy>(words: &[(&'static str, T)], r: &Reader<'_>, name: &str) -> Result<T, String> {
     let text = r.text(name)?;
     let known = words.iter().find(|(w, _)| *w == text).map(|(_, v)| *v);
-    known.ok_or_else(|| format!("`{name}` is \"{text}\", which is none of its words"))
+    known.ok_or_else(|| format!("`{name}` is \"{text}\", which is not one of its values"))
 }

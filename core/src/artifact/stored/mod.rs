@@ -1,8 +1,8 @@
 //! Artifacts as records: named fields of plain numbers, texts and further records.
 //!
-//! One form serves the cache, where a record becomes bytes ([`encode`], [`decode`]), and the border
-//! of a plugin, where its lists are lent as they lie in memory. Whoever reads a record asks for
-//! fields by name, so that a newer writer may add fields that an older reader does not know.
+//! One form serves the cache, where a record becomes bytes ([`encode`], [`decode`]), and the plugin
+//! ABI, where its lists are lent as they lie in memory. A reader finds fields by name, so that a
+//! newer writer may add fields that an older reader does not know.
 //!
 //! Cost: a record borrows the artifact's lists; bytes cost one copy each way. Limits: little-endian
 //! machines, nesting up to [`MAX_DEPTH`].
@@ -30,7 +30,7 @@ pub trait Stored: ArtifactType {
     /// Makes it from its fields.
     ///
     /// Errors: one sentence on the field at fault, such as "the field `positions` is missing". The
-    /// artifact may still be unsound: whoever reads it asks [`Artifact::check`].
+    /// artifact may still be unsound: call [`Artifact::check`] after reading it.
     fn from_record(fields: &Reader<'_>) -> Result<Self, String>;
 }
 

@@ -105,7 +105,7 @@ fn piece_edge_of(r: &Reader<'_>) -> Result<PieceEdge, String> {
             [a, b] => EdgeCurve::Cubic { controls: [a, b] },
             ref other => return Err(wrong(2, other.len())),
         },
-        other => return Err(format!("`curve` is \"{other}\", which is none of its words")),
+        other => return Err(format!("`curve` is \"{other}\", which is not one of its values")),
     };
     Ok(PieceEdge { name: r.text("name")?, curve })
 }

@@ -230,8 +230,8 @@ fn shortfall_fields(s: &Shortfall) -> Record<'_> {
 
 fn shortfall_of(r: &Reader<'_>) -> Result<Shortfall, String> {
     let code = r.text("code")?;
-    let code =
-        ErrorCode::named(&code).ok_or_else(|| format!("`code` is \"{code}\", which is none of its words"))?;
+    let code = ErrorCode::named(&code)
+        .ok_or_else(|| format!("`code` is \"{code}\", which is not one of its values"))?;
     Ok(Shortfall { code, message: r.text("message")? })
 }
 

@@ -11,7 +11,7 @@ const WAIST: f64 = 109.0;
 const HALVES: [f64; 2] = [19.0, 18.0];
 /// Half of the waist between the middle and the dart.
 const INNER: f64 = 7.5;
-/// What the skirt is wider than the waist.
+/// Width of the skirt's upper edge over that of the waist.
 const GATHER: f64 = 1.6;
 /// The side seam above the bust dart.
 const ABOVE: f64 = 3.5;

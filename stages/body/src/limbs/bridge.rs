@@ -35,12 +35,13 @@ const RELAX: (usize, f64) = (300, 2e-5);
 /// The skin over a gap stays this far outside the body, metres.
 const CLEAR: f64 = 1e-3;
 
-/// Where the body still comes through it, it is raised by this more than that, metres, so many
-/// times.
+/// Where the body still comes through the bridge, the bridge is raised by as much and this
+/// distance, metres, at most so many times.
 const RAISE: (f64, usize) = (2e-4, 8);
 
-/// So far outside the skin the body is looked for, and is told apart from it, metres; and so many
-/// of the gap's vertices nearest to such a place are raised.
+/// The body is looked for up to [`SEEN`] outside the skin, metres, and counts as outside from
+/// [`OUT`] on, metres; the [`CORNERS`] vertices of the gap that are nearest to such a place are
+/// raised.
 const SEEN: f64 = 0.01;
 const OUT: f64 = 1e-6;
 const CORNERS: usize = 3;

@@ -13,7 +13,7 @@ use toile_core::artifact::{Point3, Vector3};
 #[derive(Debug, Clone)]
 pub(crate) struct Bump {
     from: Point3,
-    /// From the first end to the second where the radii are one.
+    /// From the first end to the second, in the space in which all radii are 1.
     way: Vector3,
     shrink: Vector3,
     squared: f64,
@@ -24,7 +24,8 @@ pub(crate) struct Bump {
 }
 
 impl Bump {
-    /// Around the stretch between two points, with radii along x, y and z and a height, metres.
+    /// A bump around the segment between two points, with radii along x, y and z and a height,
+    /// metres.
     pub(crate) fn new([from, to]: [Point3; 2], radii: [f64; 3], height: f64) -> Self {
         let radii = Vector3::from(radii);
         let shrink = radii.map(|r| 1.0 / r);

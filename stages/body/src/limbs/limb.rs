@@ -35,8 +35,8 @@ struct AxisSegment {
 }
 
 impl BentTube {
-    /// Of an axis' points, the radius over the length along it, metres, and the stretch of its
-    /// sections along x and z.
+    /// A tube from the points of its axis, its radius as a function of the length along the axis,
+    /// metres, and the stretch of its sections along x and z.
     pub(crate) fn new(axis: Vec<Point3>, radius: KnotSpline, stretch: [f64; 2]) -> Self {
         let squeezed: Vec<Point3> = axis.iter().map(|&p| squeeze(p, stretch)).collect();
         let mut start = 0.0;

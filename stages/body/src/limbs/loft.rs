@@ -30,8 +30,9 @@ pub(crate) struct Loft {
 }
 
 impl Loft {
-    /// Of sections along `along` from `origin`, whose fronts look to `front` as far as that is
-    /// square to the line; the ends of `span` are rounded over `rounding`, metres.
+    /// A loft of the sections of `knots` along the line from `origin` to `end`. Their fronts face
+    /// the part of `front` that is perpendicular to the line; the ends of `span` are rounded over
+    /// `rounding`, metres.
     pub(crate) fn new(
         [origin, end]: [Point3; 2],
         front: Vector3,

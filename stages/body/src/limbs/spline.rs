@@ -1,7 +1,7 @@
 //! Monotone cubic interpolation (Fritsch and Carlson, 1980): a curve through given knots that never
 //! overshoots them, so that a waist between two wider levels stays the narrowest place.
 //!
-//! Cost: a binary search and one cubic a look-up. Limit: the second derivative jumps at knots.
+//! Cost: a binary search and one cubic per lookup. Limit: the second derivative jumps at knots.
 
 /// A smooth curve through knots, constant outside of them.
 #[derive(Debug, Clone)]

@@ -1,4 +1,4 @@
-//! Boxes around parts of a figure: what is far from a part need not ask for its value.
+//! Boxes around parts of a figure: far from a part its value need not be computed.
 
 use toile_core::artifact::{Point3, Vector3};
 

@@ -22,7 +22,7 @@ const LINES: i32 = 9;
 /// Hip, waist, bust, neck, arm and inseam, metres.
 pub(crate) type Six = [f64; 6];
 
-/// What a size asks for.
+/// The measures that a size requires.
 pub(crate) fn wanted(size: &FigureSize) -> Six {
     [size.hip, size.waist, size.bust, size.neck, size.arm, size.inseam]
 }
@@ -133,7 +133,7 @@ pub(crate) fn meshed(figure: &BodyFigure, mesh: &SkinMesh, marks: &NamedLandmark
     ])
 }
 
-/// Girths of upper arm and thigh, which are told only.
+/// Girths of upper arm and thigh, which are reported and not fitted.
 pub(crate) fn limbs(figure: &BodyFigure, mesh: &SkinMesh, marks: &NamedLandmarks) -> Option<[f64; 2]> {
     let (middle, along) = figure.upper_arm();
     let fork = marks.get("crotch")?.y;

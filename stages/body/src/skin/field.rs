@@ -1,11 +1,11 @@
 //! Smooth solids as scalar fields: negative inside, zero on the skin, about the distance near it.
 //!
-//! Parts ([lofts](crate::limbs::loft), ellipsoids, and [limbs](crate::limbs::limb)) are
-//! joined by a smooth minimum (after Quilez, 2008), so that no crease shows where an arm leaves the
-//! trunk. Every part is symmetric about x = 0 and is asked at x >= 0 only.
+//! Parts ([lofts](crate::limbs::loft), ellipsoids, and [limbs](crate::limbs::limb)) are joined by a
+//! smooth minimum (after Quilez, 2008), so that no crease shows where an arm leaves the trunk.
+//! Every part is symmetric about x = 0 and is evaluated at x >= 0 only.
 //!
-//! Cost: some tens of nanoseconds a part and point. Limit: values are distances to first order
-//! only; whoever needs the skin itself steps onto it with [`ScalarField::onto_skin`].
+//! Cost: some tens of nanoseconds per part and point. Limit: values are distances to first order
+//! only; [`ScalarField::onto_skin`] gives points on the skin itself.
 
 use toile_core::artifact::{Point3, Vector3};
 

@@ -1,12 +1,12 @@
 //! The skin of a [`ScalarField`] as an even, closed triangle mesh: surface nets (Gibson, 1998) with
 //! one vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004),
-//! [refined](crate::skin::refine) where the field asks for shorter edges, with rounds of
-//! tangential smoothing, each followed by a Newton step back onto the skin.
+//! [refined](crate::skin::refine) where the field requires shorter edges, with rounds of tangential
+//! smoothing, each followed by a Newton step back onto the skin.
 //!
 //! The field is symmetric about x = 0: one half is meshed, with a column of cells astride the
 //! plane, and mirrored, so that the mesh is symmetric to the last bit and costs half.
 //!
-//! Cost: one look-up a grid point near the skin and about four a vertex and round; slabs and
+//! Cost: one look-up per grid point near the skin and about four per vertex and round; slabs and
 //! vertices in parallel. Limit: parts thinner than two cells are lost, and parts closer than two
 //! cells may share edges of four triangles, which the caller must refuse.
 

@@ -1,4 +1,4 @@
-//! Finer triangles where they are asked for: long edges are halved, then edges are turned until no
+//! Finer triangles where they are requested: long edges are halved, then edges are turned until no
 //! angle opposite to one is too wide (Delaunay's condition on a surface; Lawson, 1977).
 //!
 //! Halving is decided edge by edge, so both triangles of an edge agree and no vertex hangs. Cost: a

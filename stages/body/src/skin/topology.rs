@@ -19,7 +19,7 @@ pub(crate) fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<BTreeSe
     beside
 }
 
-/// What the edges of a triangle mesh tell.
+/// Counts of a triangle mesh, from its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct MeshTopology {
     /// Vertices that a triangle uses.
@@ -32,7 +32,7 @@ pub(crate) struct MeshTopology {
     pub open: usize,
     /// Edges with more than two triangles, or whose two triangles run the same way.
     pub faulty: usize,
-    /// Pieces that hang together.
+    /// Connected components.
     pub components: usize,
     /// The first open edge.
     pub first_open: Option<[u32; 2]>,

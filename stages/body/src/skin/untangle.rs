@@ -14,8 +14,8 @@ const CELL: f64 = 0.012;
 /// Rounds of smoothing at most.
 const ROUNDS: usize = 12;
 
-/// Smooths the skin where it crosses itself. `fine` tells of a place whether parts thinner than a
-/// cell may lie there.
+/// Smooths the skin where it crosses itself. `fine` says whether parts thinner than a cell may lie
+/// at a place.
 pub(crate) fn untangle(
     positions: &mut [Point3],
     triangles: &[[u32; 3]],
@@ -47,7 +47,7 @@ pub(crate) fn untangle(
     }
 }
 
-/// The corners of every edge and of the triangle that it passes through and shares no vertex with.
+/// The corners of every edge and of each triangle that it passes through without sharing a vertex.
 pub(crate) fn crossing(positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<[u32; 5]> {
     let cells = |points: &[u32]| {
         let of = |p: &Point3| [p.x, p.y, p.z].map(|c| (c / CELL).floor() as i32);

@@ -16,7 +16,7 @@ pub trait Obstacle: Send + Sync {
     /// Coulomb's coefficient.
     fn friction(&self) -> f64;
 
-    /// The velocity that a vertex at `x` keeps in a step of `dt` when it wants `v`.
+    /// The velocity that a vertex at `x` keeps in a step of `dt` if it would move with `v`.
     fn stop(&self, x: &Vec3, v: &Vec3, dt: f64) -> Vec3 {
         let (gap, normal) = self.distance(x);
         let approach = v.dot(&normal);

@@ -98,7 +98,7 @@ impl StrainLimit {
         if sum == 0.0 {
             return;
         }
-        // The wanted shape sits where the corners, each as unwilling to move as it is heavy, move
+        // The clamped shape is placed so that the mass-weighted displacement of the corners is
         // least.
         let shape: [Vec3; 3] = std::array::from_fn(|k| wanted * (rest[k] - rest[0]));
         let hold = corners.map(|v| if fixed[v] { 1e9 } else { sheet.masses()[v] });

@@ -139,7 +139,7 @@ impl BodyBox {
     }
 
     /// Whether each piece is past the body; empty where none is. `piece` is the piece of each node,
-    /// or [`NO_PIECE`], and `held` tells which nodes are pinned.
+    /// or [`NO_PIECE`], and `held` says which nodes are pinned.
     #[must_use]
     pub fn past(&self, x: &[Vec3], piece: &[u32], held: &[bool]) -> Vec<bool> {
         let height = |p: &Vec3| p.dot(&self.axes[0]);

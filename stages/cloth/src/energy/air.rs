@@ -10,8 +10,8 @@
 //! before the step gives a drag tensor ([`AirDrag::drag_tensors`]), a third of which acts on the
 //! velocity of each corner after the step. The sum is the law; it is exact in a steady state, and
 //! for a sheet that the wind carries off face on. The tensor is positive semi-definite, so still
-//! air only takes energy, for any step. Cost: a few flops a triangle and step. Limits: no lift, no
-//! wake of other cloth, no added mass of air.
+//! air only takes energy, for any step. Cost: a few flops per triangle and step. Limits: no lift,
+//! no wake of other cloth, no added mass of air.
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;

@@ -20,7 +20,7 @@ pub struct Band {
 pub struct Bands(Vec<Band>);
 
 impl Bands {
-    /// These pieces.
+    /// The energy of these bands.
     #[must_use]
     pub fn new(bands: Vec<Band>) -> Assembled<2, Self> {
         Assembled(Self(bands))

@@ -26,18 +26,18 @@ pub enum Bending {
     Quadratic,
     /// Coupled hinges, at any fold.
     Hinge,
-    /// Hinges each by itself, by `2 tan(theta / 2)` of their angle.
+    /// Lone hinges, each by `2 tan(theta / 2)` of its angle.
     DiscreteShell,
     /// Skip-one springs.
     SkipOne,
 }
 
-/// A pair of models.
+/// The models of a sheet's membrane and bending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Models {
-    /// In the plane.
+    /// The resistance in the plane of the cloth.
     pub membrane: Membrane,
-    /// Out of it.
+    /// The resistance to bending.
     pub bending: Bending,
 }
 

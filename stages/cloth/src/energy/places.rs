@@ -36,9 +36,10 @@ impl Places {
         for element in 0..count {
             let n = nodes(element);
             for (a, b) in (0..N).flat_map(|a| (a..N).map(move |b| (a, b))) {
-                // A node that stands twice in an element, as the two tips of a hinge that sewing
-                // has folded flat, meets itself here once, and not in both orders: the matrix is
-                // softer there than the second derivative, which changes no state of rest.
+                // A node can occur twice in an element: sewing makes the two tips of a hinge one
+                // node. Its block gets the pair once, not in both orders, so the matrix is softer
+                // there than the second derivative. The gradient is exact, so states of rest do not
+                // change.
                 if let Some(Slot { index, flipped }) = pattern.slot(n[a], n[b]) {
                     let (row, column) = if flipped { (b, a) } else { (a, b) };
                     let share = Share { element: element as u32, row: row as u8, column: column as u8 };

@@ -73,7 +73,7 @@ impl Curve {
         self.piece(strain).1
     }
 
-    /// Solve per unit of rest area up to `strain`.
+    /// Work per unit of rest area up to `strain`.
     #[inline]
     #[must_use]
     pub fn energy(&self, strain: f64) -> f64 {

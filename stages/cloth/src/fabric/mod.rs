@@ -35,7 +35,7 @@ pub struct Fabric {
     /// Bending rigidity of a strip cut along the weft, N m.
     pub bending_weft: f64,
     /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per
-    /// m of width. Only `StaticEquilibrium` knows it.
+    /// m of width. Only `StaticEquilibrium` uses it.
     pub bending_friction_warp: f64,
     /// The same of a strip cut along the weft, N m/m.
     pub bending_friction_weft: f64,
@@ -43,7 +43,7 @@ pub struct Fabric {
     pub thickness: f64,
     /// Coulomb friction of cloth on cloth and body.
     pub friction: f64,
-    /// Rate at which strain waves die, as stiffness-proportional damping time, s.
+    /// Damping of strain waves, as stiffness-proportional damping time, s.
     pub damping: f64,
 }
 

@@ -38,7 +38,7 @@ impl Cholesky {
         Self::analyse_width(a, 3)
     }
 
-    /// For a matrix whose blocks are multiples of the identity: keeps one number a block, a ninth
+    /// For a matrix whose blocks are multiples of the identity: keeps one number per block, a ninth
     /// of the work.
     ///
     /// # Errors
@@ -102,7 +102,7 @@ impl Cholesky {
     pub fn solve(&self, b: &[Vec3]) -> Vec<Vec3> {
         let (rows, columns) = (b.len() * self.width, 3 / self.width);
         let mut flat = vec![0.0; 3 * b.len()];
-        // One column of all scalars, or three columns of one scalar a block.
+        // One column of all scalars, or three columns of one scalar per block.
         let at = |v: usize, k: usize| if self.width == 3 { 3 * v + k } else { rows * k + v };
         for (v, value) in b.iter().enumerate() {
             (0..3).for_each(|k| flat[at(v, k)] = value[k]);

@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(pattern.slot(1, 1), Some(Slot { index: 1, flipped: false }));
         assert_eq!(pattern.slot(2, 0), Some(Slot { index: 4, flipped: true }));
         assert_eq!(pattern.blocks(), 6);
-        // Free nodes that it does not couple, and held ones that nobody asks for.
+        // Free nodes that it does not couple; held ones need no coupling.
         assert!(pattern.couples(&[0, 1, 2]) && !pattern.couples(&[0, 1, 3]));
     }
 

@@ -35,8 +35,9 @@ pub(super) struct Answer<'a> {
 }
 
 impl Answer<'_> {
-    /// The move along the normal of a node at `gap` from the contact distance that would move by
-    /// `approach`, and how much of it is velocity; `None` for a node that is not in contact.
+    /// For a node at `gap` from the contact distance that would move by `approach` along the
+    /// normal: its move along the normal, and the part of it that is velocity. `None` for a node
+    /// that is not in contact.
     fn along_normal(&self, node: usize, gap: f64, approach: f64) -> Option<(f64, f64)> {
         if let Some(penalty) = self.response.penalty {
             let square = self.dt * self.dt * self.inverse[node];

@@ -9,7 +9,7 @@ use crate::statics::drive::solve::Collider;
 use crate::statics::levels::cloths::pieces_of_scene;
 use crate::statics::levels::pieces::Pieces;
 
-/// What a fall is found by.
+/// What detects a fall.
 pub(super) struct Falls {
     body: BodyBox,
     /// The piece of each vertex, and of each node once seams are joined, with what is pinned.
@@ -18,7 +18,8 @@ pub(super) struct Falls {
 }
 
 impl Falls {
-    /// Of a scene on a body; `None` without a body or without gravity in the last phase.
+    /// The detector of a scene on a body; `None` without a body or without gravity in the last
+    /// phase.
     pub(super) fn of(scene: &Scene, collider: Option<Collider<'_>>, pieces: &Pieces) -> Option<Self> {
         let gravity = scene.phases.last().map(|p| p.gravity).unwrap_or_default();
         let body = collider.and_then(|c| BodyBox::of(c.surface, &gravity))?;

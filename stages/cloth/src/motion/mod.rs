@@ -255,7 +255,7 @@ struct MotionRun<'a> {
     pieces: Pieces,
     falls: Option<Falls>,
     clock: Instant,
-    /// Tells to stop where the caller does, and when time is over.
+    /// Stops where the caller does, and when the time limit is reached.
     stopper: Stopper,
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
 }

@@ -18,7 +18,8 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// All that nodes at `x` may come nearer to than `offset` while they move by about `moves`.
+    /// Everything that nodes at `x` may approach to within `offset` while they move by about
+    /// `moves`.
     pub(super) fn of(
         tree: Option<&ClothTree>,
         collider: Option<Collider<'_>>,

@@ -196,8 +196,8 @@ fn restitution_gives_back_its_share_of_the_speed() {
 
 #[test]
 fn a_penalty_lets_cloth_sink_by_its_weight_over_the_stiffness() {
-    // Where it is as stiff as steps allow it holds like a floor that gives way by no more than
-    // cloth is thick.
+    // With the greatest stiffness that the steps allow, the floor yields by no more than the
+    // cloth's thickness.
     let offset = falling(2).material.thickness;
     let soft = bounce(Response { restitution: 0.0, penalty: Some(1e9) });
     assert!(soft > -0.5 * offset && soft < 0.2, "{soft}");

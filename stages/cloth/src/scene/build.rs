@@ -81,7 +81,7 @@ impl Scene {
         check::check(self)
     }
 
-    /// Whether the air of the last phase is still, as states of rest want it.
+    /// Whether the air of the last phase is still, as states of rest require.
     ///
     /// # Errors
     /// [`ClothError::Wind`].

@@ -106,7 +106,7 @@ pub fn drape(cells: u32) -> Scene {
     Scene { body: Some(ball(48)), self_collision: true, ..square(format!("drape_{cells}"), cells, 0.32) }
 }
 
-/// A box from `low` to `high` as a body, two triangles a face: a table, a plate, a blade.
+/// A box from `low` to `high` as a body, two triangles per face: a table, a plate, a blade.
 #[must_use]
 pub fn block(low: [f64; 3], high: [f64; 3]) -> SceneBody {
     let corner = |i: usize| Vector3::from_fn(|k, _| if i >> k & 1 == 1 { high[k] } else { low[k] });
@@ -125,7 +125,8 @@ pub fn cover(body: SceneBody, cells: u32, turn: f64) -> Scene {
     scene
 }
 
-/// So many square sheets of half the size over each other, 4 mm apart, above the ball of [`drape`].
+/// `layers` square sheets of half the size over each other, 4 mm apart, above the ball of
+/// [`drape`].
 #[must_use]
 pub fn stack(layers: usize, cells: u32) -> Scene {
     let mut scene = drape(cells);

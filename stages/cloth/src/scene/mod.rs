@@ -209,7 +209,7 @@ pub enum SceneError {
     Gather {
         /// The seam.
         seam: String,
-        /// The ratio asked for.
+        /// The requested ratio.
         stated: f64,
         /// The ratio of its sides.
         found: f64,

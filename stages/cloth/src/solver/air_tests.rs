@@ -251,8 +251,8 @@ fn the_static_solver_rests_in_still_air_and_names_others_for_wind() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// However the sheet lies and moves, still air takes energy, and the linear step holds as much
-    /// as the law.
+    /// For any position and velocity of the sheet, still air takes energy, and the drag tensors of
+    /// the linear step sum to the force of the drag law.
     #[test]
     fn air_takes_energy_and_the_drag_tensors_add_up_to_the_law(
         numbers in prop::collection::vec(-3.0..3.0_f64, 24), wind in prop::collection::vec(-20.0..20.0_f64, 3),

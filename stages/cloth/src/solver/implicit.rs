@@ -2,9 +2,9 @@
 //! inertia alone would lead (Baraff and Witkin, 1998, there with one Newton step; here to a
 //! residual).
 //!
-//! Stable at any step, never gains energy. A mode of frequency w loses the factor
-//! `1/sqrt(1 + (w dt)²)` a step: choose dt by the motion that must survive. Velocities are those of
-//! the middle of a step, as with central differences, so free fall is exact.
+//! Stable at any step, never gains energy. A mode of frequency w loses the factor `1/sqrt(1 + (w
+//! dt)²)` a step: choose dt by the motion that must not be damped away. Velocities are those of the
+//! middle of a step, as with central differences, so free fall is exact.
 
 use super::{Model, Newton, NewtonReport, Report, Solver, State};
 use crate::energy::{AirStep, Energy, Places, Projection, Vec3, total_value};

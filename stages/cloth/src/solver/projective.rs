@@ -2,12 +2,12 @@
 //! local and global steps.
 //!
 //! Local: each triangle's deformation is taken to the nearest rotation. Global: one linear system
-//! whose matrix never changes, so it is factored once, a number a vertex pair. Membrane `k A |F -
-//! R|² / 2` (isotropic, Poisson's ratio 0, linear in a pull), bending quadratic. Every iteration
-//! lowers the energy, most of all the first few; convergence is slower for stiffer sheets and
-//! longer steps. `iterations` trades accuracy for time. The energies of the model are not used; its
-//! masses, gravity, drag, air, pins and obstacles are. In air the matrix is factored anew each
-//! step, for drag depends on the velocity.
+//! with one number per vertex pair; its matrix never changes, so it is factored once. Membrane `k A
+//! |F - R|² / 2` (isotropic, Poisson's ratio 0, force linear in the stretch), bending quadratic.
+//! Every iteration lowers the energy, most of all the first few; convergence is slower for stiffer
+//! sheets and longer steps. `iterations` trades accuracy for time. The energies of the model are
+//! not used; its masses, gravity, drag, air, pins and obstacles are. In air the matrix is factored
+//! anew each step, for drag depends on the velocity.
 
 use nalgebra::{Matrix3, Matrix3x2, Vector2};
 use rayon::prelude::*;

@@ -1,5 +1,5 @@
 //! Extreme frequencies of a model about a state: the greatest bounds the explicit step, the lowest
-//! are its slow swings.
+//! are its slowest oscillations.
 //!
 //! Greatest: Lanczos on `M^-1/2 K M^-1/2`, full reorthogonalisation; 40 products give it to three
 //! digits. Lowest: subspace iteration with a factor of K.
@@ -16,7 +16,7 @@ const LANCZOS_STEPS: usize = 48;
 /// Rounds of subspace iteration: the lowest frequency of a strip is then good to nine digits.
 const SUBSPACE_ROUNDS: usize = 30;
 
-/// Greatest angular frequency at `x`, rad/s; from below, by at most its third digit.
+/// Greatest angular frequency at `x`, rad/s; a lower bound, right to three digits.
 #[must_use]
 pub fn omega_max(model: &Model, x: &[Vec3]) -> f64 {
     let k = model.stiffness(x, Projection::PositiveSemiDefinite);

@@ -6,8 +6,8 @@
 //! There is one Gauss-Seidel sweep a small step. In the limit of small steps it solves the same
 //! equations as finite elements in their linear range. At a given cost it is too soft, most of all
 //! in long, stiff pieces, because a sweep carries a force only along the order of the vertices. It
-//! is always stable. Cost: one 3 x 3 solve a triangle and step, no matrix. The model's energies are
-//! not used; its masses, gravity, drag, air, pins and obstacles are.
+//! is always stable. Cost: one 3 x 3 solve per triangle and step, no matrix. The model's energies
+//! are not used; its masses, gravity, drag, air, pins and obstacles are.
 
 use nalgebra::Matrix3;
 

@@ -14,7 +14,7 @@ use toile_core::prelude::*;
 #[choice]
 #[derive(Copy, Eq)]
 pub enum Distances {
-    /// Where a vertex asks for them, each once.
+    /// Where a vertex needs them, each once.
     Asked,
     /// All around the body, before any cloth comes.
     Ahead,

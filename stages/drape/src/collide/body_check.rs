@@ -1,7 +1,7 @@
 //! Whether a mesh can be a body: inside and outside must be told apart everywhere.
 //!
 //! Finite vertices, triangles with area, every edge shared by exactly two triangles that run
-//! through it in opposite directions, every piece facing outwards. Each fault is told with its
+//! through it in opposite directions, every piece facing outwards. Each fault is reported with its
 //! count, edges with the place of the first. O(n log n).
 
 use toile_core::artifact::{Body, Point3};

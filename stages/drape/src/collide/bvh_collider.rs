@@ -75,7 +75,7 @@ pub struct BvhCollider {
     distances: Distances,
 }
 
-/// Share of the stage's time that distances where they are asked for save, on the vest.
+/// Share of the stage's time that distances where they are requested save, on the vest.
 const SHARE: f64 = 0.7;
 
 #[stage]

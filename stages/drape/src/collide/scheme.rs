@@ -11,7 +11,7 @@ use toile_core::{Context, StageError};
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::volume::BoundingVolume;
 
-/// Trees kept for the next query: one a garment is enough, a few let garments run side by side.
+/// Trees kept for the next query: one per garment is enough, a few let garments run side by side.
 const POOL: usize = 4;
 
 /// Collisions by hierarchies of one kind of volume.

@@ -1,7 +1,7 @@
 //! Cloth against itself: contacts, and how far vertices may move.
 //!
-//! Pairs come from the cloth's tree ([`ClothTree`]), about six a triangle for its neighbours alone;
-//! cost O(n + pairs).
+//! Pairs come from the cloth's tree ([`ClothTree`]), about six per triangle for its neighbours
+//! alone; cost O(n + pairs).
 //!
 //! The bounds are those of offset geometric contact (Chen, Hsu, Yuksel et al. 2025) and, before
 //! it, of Wu et al. 2020: two pieces at distance d cannot meet while all their vertices move by

@@ -31,8 +31,8 @@ pub(super) fn why_again(result: &Result<Equilibrium, StaticsError>) -> Option<&'
     }
 }
 
-/// Whether the second result of a garment is to be taken for its first. An error of the first tells
-/// more than one of the second.
+/// Whether the second result of a garment replaces its first: only if its fault is less severe. Of
+/// two equal faults the first is kept, because its error says more.
 pub(super) fn is_better(
     second: &Result<Equilibrium, StaticsError>,
     first: &Result<Equilibrium, StaticsError>,

@@ -1,10 +1,10 @@
-//! Rule `regions-at-rest`: what has come to rest sleeps while few vertices still move.
+//! Rule `regions-at-rest`: vertices at rest are held fixed while few others still move.
 //!
 //! Fact: where a step moved few vertices (at most 15 % of all, those within two rings around them
-//! counted) these are a system of their own until they rest, and all else is held. Tolerance: the
-//! whole looks again afterwards, and rest is proved with all, so the state keeps the same speed of
-//! rest; which of its neighbours a hair picks may differ, as between starts that are moved by a
-//! millimetre. Source: Lanzkron, Rose, Wilkes 1996.
+//! counted) these are solved as a system of their own until they rest, and all others are held.
+//! Tolerance: afterwards the whole mesh takes steps again, and rest is proved with all vertices, so
+//! the state meets the same limit of speed. Which of several neighbouring states is found may
+//! differ, as between starts that are moved by a millimetre. Source: Lanzkron, Rose, Wilkes 1996.
 
 use super::mixed_precision::APART;
 use toile_core::cost::{Quantity, Size};

@@ -5,8 +5,8 @@
 //! or cut its mesh. A placement of a pattern puts its pieces around the body, far apart and with
 //! others in between, so cloth passes through cloth while its seams close. Between two panels of an
 //! outline nothing lies, and sewn plainly they end in the same folds from a start that is moved by
-//! a millimetre. Behind a draper the garment hangs already:
-//! it goes on from there, on the same settings. Whoever prepared a scene knows how it lies.
+//! a millimetre. Behind a draper the garment hangs already: it continues from there, with the same
+//! settings. For a prepared scene nothing is decided: its author sets the parameters.
 
 use toile_core::Known;
 use toile_core::artifact::{ArtifactType, Garment, Kind, Pattern};
@@ -58,7 +58,7 @@ pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
     }
 }
 
-/// What is told of it, unless the file says otherwise.
+/// The decision that follows from the stage's place, unless the file sets the parameter.
 pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
     let is_written = |name: &str| known.node().params.contains_key(name);
     let (from, what, fact, name) = match origin(known.nodes, known.index)? {

@@ -1,7 +1,8 @@
 //! `CentralDifferences`: sews and drapes in time by explicit steps on finite elements.
 //!
-//! Method: leapfrog with a step below the limit 2/omega_max, which is computed. Cost: a few flops a
-//! vertex and step, but some thousand steps a second. Limit: stiff or fine cloth makes steps tiny.
+//! Method: leapfrog with a step below the limit 2/omega_max, which is computed. Cost: a few flops
+//! per vertex and step, but some thousand steps a second. Limit: stiff or fine cloth makes steps
+//! tiny.
 
 use super::models::{BendingModel, MembraneModel, models};
 use super::motion::{InTime, drape};

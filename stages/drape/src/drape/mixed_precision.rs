@@ -1,12 +1,12 @@
 //! Rule `mixed-precision`: the factor of each step's matrix in single precision, where that solves
 //! the step.
 //!
-//! Fact: every step's solution is held against its matrix in double precision, and refined; where
+//! Fact: every step's solution is compared with its matrix in double precision, and refined; where
 //! more than a ten-thousandth of the right side is left, the matrix is too ill conditioned, and is
 //! factored anew in double precision. Forces, energies and the proof of rest are of double
-//! precision always. Tolerance: the state keeps the same speed of rest; which of its neighbours a
-//! hair picks may differ, as between starts that are moved by a millimetre. Source: Wilkinson 1963,
-//! Carson and Higham 2018.
+//! precision always. Tolerance: the state meets the same limit of speed; which of several
+//! neighbouring states is found may differ, as between starts that are moved by a millimetre.
+//! Source: Wilkinson 1963, Carson and Higham 2018.
 
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
@@ -46,7 +46,7 @@ pub(super) fn rule(precision: FactorPrecision, continued: bool, size: &Size) -> 
         state: State::Simplified,
         what: "double precision of each step's factor: only where single does not solve the step".into(),
         fact: format!(
-            "about {triangles:.0} triangles, whose matrix tells at each step how well it is solved"
+            "about {triangles:.0} triangles, whose matrix shows at each step how well it is solved"
         ),
         tolerance: Tolerance::Distance(if continued { APART.0 } else { APART.1 }),
         saves: Saves::Share(SHARE),
@@ -63,7 +63,7 @@ mod tests {
     fn it_speaks_where_precision_is_mixed_and_there_is_cloth() {
         let size = Size::new().with(Quantity::Triangles, 4_673.0);
         let told = rule(FactorPrecision::Mixed, true, &size).map(|d| (d.fact, d.tolerance));
-        let words = "about 4673 triangles, whose matrix tells at each step how well it is solved".to_owned();
+        let words = "about 4673 triangles, whose matrix shows at each step how well it is solved".to_owned();
         assert_eq!(told, Some((words, Tolerance::Distance(0.008))));
         assert_eq!(
             rule(FactorPrecision::Mixed, false, &size).map(|d| d.tolerance),

@@ -7,7 +7,7 @@ use toile_core::prelude::*;
 /// Line force that a worn garment meets where it is tight, N/m: a snug sleeve pulls by about that.
 const WORN_FORCE: f64 = 50.0;
 
-/// Springs along edges, and over every second vertex.
+/// Models with springs along edges, and over every second vertex.
 pub(crate) fn springs() -> Models {
     Models { membrane: Membrane::Springs, bending: Bending::SkipOne }
 }

@@ -1,9 +1,10 @@
-//! `StaticEquilibrium`: sews and drapes at once, straight to static equilibrium.
+//! `StaticEquilibrium`: sews and drapes at once, and solves for static equilibrium without
+//! simulating motion.
 //!
 //! Method: the engine's `StaticEquilibrium` (coarse to fine, Newton's method on the potential of
 //! sheet, seams, weight, contacts and friction). Cost: some 35 to 150 factorizations of the finest
-//! mesh, O(triangles^1.5) each with a small factor. Limits: the way there is no motion: nothing of
-//! it may be shown as an animation; folds and friction have many states of rest, of which one is
+//! mesh, O(triangles^1.5) each with a small factor. Limits: intermediate states are no physical
+//! motion and make no animation; folds and friction have many states of rest, of which one is
 //! found.
 
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
@@ -39,20 +40,20 @@ pub enum ProofSteps {
     /// A sixtieth of a second: the least force left over shows.
     Short,
     /// A tenth of a second and more, too: what slides or falls shows. Folds may still creep, in
-    /// garments of many gathers by some centimetres in the end; the way there is what takes
-    /// longest.
+    /// garments of many gathers by some centimetres in the end; following that creep takes most of
+    /// the time.
     Long,
 }
 
-/// Sews the garment and brings it to rest, without the way there.
+/// Sews the garment and finds its state of rest, without simulating how it gets there.
 ///
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
 /// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static`
-/// would gain `speed` if it were let go for a short while (see `proof`), with friction within its
+/// would gain `speed` if it moved freely for a short while (see `proof`), with friction within its
 /// limit. Seams are joined exactly, cloth is kept out of the body and out of itself. Where it does
 /// not come to rest in `steps`, the last state goes on with a warning. Where the coarsest mesh
 /// turns out too coarse (a seam stays open, layers tangle, a limb comes through), it begins again
-/// on a finer one: the figure `restarts` tells how often, and a larger `coarsest` saves it. Cloth
+/// on a finer one: the figure `restarts` says how often, and a larger `coarsest` avoids it. Cloth
 /// that misses the body or slides off it is an error, as soon as nothing is left that could catch
 /// it, mostly on the coarsest mesh. A scene without a body that no pin holds has no rest: its fall
 /// is followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state
@@ -82,8 +83,8 @@ pub struct StaticEquilibrium {
     #[param(default = 5e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// The share of the vertices that may gain more, for garments that lie where the skin of a body
-    /// folds, as in an armpit: some vertices there never come to rest. The figure `non_static`
-    /// tells the share that still moves.
+    /// folds, as in an armpit: some vertices there never come to rest. The figure `non_static` is
+    /// the share that still moves.
     #[param(default = 0.015, min = 0.0, max = 0.5, trades, finer = "less")]
     pub non_static: f64,
     /// Which steps prove rest.
@@ -105,7 +106,7 @@ pub struct StaticEquilibrium {
     /// Wall time after which it gives up, with an error. A run that meets it is not repeatable.
     #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
     pub time_limit: f64,
-    /// Whether bending starts far too stiff and is let go mesh by mesh: a start moved by a
+    /// Whether bending starts far too stiff and is softened mesh by mesh: a start moved by a
     /// millimetre then ends in the same folds, and a finer mesh in like ones. Without, it is
     /// faster, and chance picks the folds.
     #[param(default = true)]
@@ -122,7 +123,7 @@ pub struct StaticEquilibrium {
     /// is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh.
     /// Where the body keeps seams open, or the cloth does not come out of itself or of the body,
     /// the garment is sewn again around a thin figure of the body's pose, which grows to its full
-    /// size in it; that is told, and the better result is taken. Where the placement left other
+    /// size in it; a note says so, and the better result is taken. Where the placement left other
     /// starts and the first does not sew cleanly on the coarsest mesh, each is sewn on it, and the
     /// best goes on. Left out, it is true behind a placement of a pattern, such as `Arrange`.
     #[param(default = false, way)]
@@ -131,8 +132,8 @@ pub struct StaticEquilibrium {
     /// which is checked, or always double. The state that is found keeps `speed` either way.
     #[param(default = FactorPrecision::Mixed)]
     pub precision: FactorPrecision,
-    /// Whether what has come to rest sleeps while few vertices still move: these settle by
-    /// themselves before the whole takes its next step. Rest is proved with all either way.
+    /// Whether vertices at rest are held while few others still move: these are solved alone before
+    /// the next step of all vertices. Rest is proved with all vertices either way.
     #[param(default = true)]
     pub asleep: bool,
     /// Distance at which cloth is held off itself where the pipeline names no collider.
@@ -193,7 +194,7 @@ impl StaticEquilibrium {
                 cx.note(format!(
                     "{why}: the garment is sewn again around a thin figure, which grows to the body"
                 ));
-                // Both ways share the time that the user gives.
+                // Both solves together get the time limit.
                 let solver =
                     Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
                 let second = solver.solve_around(&scene, engine_collider, &around, &stopper, &mut |level| {
@@ -202,7 +203,7 @@ impl StaticEquilibrium {
                 if is_better(&second, &result) {
                     result = second;
                 } else {
-                    cx.note("that came out no better: the first result is kept");
+                    cx.note("sewing around the thin figure came out no better: the first result is kept");
                 }
             }
         }
@@ -331,7 +332,7 @@ impl StaticEquilibrium {
     }
 }
 
-/// Tells the user how far the solver has come, and stops it when asked to.
+/// Shows the user how far the solver has come, and stops it when asked to.
 struct SolverProgress<'a> {
     cx: &'a Context,
     wanted: f64,

@@ -1,5 +1,5 @@
-//! What of a scene a garment cannot hold: it is named, so that nobody takes the result for the
-//! scene's.
+//! Names what of a scene a garment cannot hold, so that the result is not taken for that of the
+//! scene.
 
 use toile_cloth::scene::Scene;
 

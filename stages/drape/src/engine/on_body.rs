@@ -1,14 +1,14 @@
-//! How much of a garment is still in its place on the body: what slid off shows, whatever holds it
-//! up in the end.
+//! How much of a garment is still in its place on the body, whatever holds up the part that slid
+//! off.
 //!
-//! Method: for each piece of cloth (all that hangs together) the height of its upper edge where it
-//! starts, but no higher than the body under it, against that where it ends. What starts upright is
-//! also held by the mean way of its vertices down, so that a skirt that slid on one side alone has
-//! sunk. The way that it has sunk, as a share of the piece's size (the root of its flat area), is
-//! what has left its place. So cloth that starts above a ball and comes to lie on it has sunk by
-//! nothing, a skirt that slides 5 cm onto the hips by some hundredths, a skirt that lies about the
-//! feet by all. Cost: some hundred distances a piece. Limit: a body thinner than a ninth of the
-//! piece is not seen under it; then its start alone counts.
+//! Method: for each connected piece of cloth, the height of its upper edge at the start, but no
+//! higher than the body under it, minus its height at the end. Of a piece that starts upright the
+//! mean downward displacement of its vertices counts too, so that a skirt that slid on one side
+//! only has sunk. The distance sunk over the piece's size (the root of its flat area) is the share
+//! that has left its place. So cloth that starts above a ball and ends on it has sunk by 0, a skirt
+//! that slides 5 cm onto the hips by some hundredths, a skirt that ends around the feet by 1. Cost:
+//! some hundred distances a piece. Limit: a body thinner than a ninth of the piece is not seen
+//! under it; then its start alone counts.
 
 use super::SchemeSurface;
 use super::pieces::pieces;

@@ -3,7 +3,7 @@
 use toile_core::artifact::Garment;
 use toile_core::artifact::join_pairs;
 
-/// All cloth that hangs together.
+/// A connected piece of cloth.
 pub(super) struct ClothPiece {
     /// Its vertices, ascending.
     pub(super) vertices: Vec<usize>,
@@ -13,7 +13,7 @@ pub(super) struct ClothPiece {
     pub(super) is_held: bool,
 }
 
-/// The pieces of a garment: what hangs together by triangles, welds and seams.
+/// The pieces of a garment: what is connected by triangles, welds and seams.
 pub(super) fn pieces(garment: &Garment) -> Vec<ClothPiece> {
     let mut root = garment.weld.clone();
     let sides: Vec<[u32; 2]> = garment.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]).collect();

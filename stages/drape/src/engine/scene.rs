@@ -85,7 +85,7 @@ pub fn held_of(held: &EngineHeld) -> Held {
     }
 }
 
-/// The engine's fabric, held off the body by `thickness`, m.
+/// The engine's fabric, which contact keeps at a distance of `thickness`, m.
 ///
 /// # Errors
 /// A fabric whose curves the engine does not take.

@@ -21,8 +21,8 @@ pub struct SchemeSurface<'a> {
 }
 
 impl<'a> SchemeSurface<'a> {
-    /// The body that `scheme` keeps cloth out of. Its sharp edges and its triangles are known where
-    /// the scheme shows a mesh.
+    /// The body that `scheme` keeps cloth out of. Its sharp edges and its triangles are known only
+    /// where the scheme gives a mesh.
     #[must_use]
     pub fn new(scheme: &'a dyn Collide) -> Self {
         Self { scheme, sharp: OnceLock::new(), facets: OnceLock::new() }
@@ -30,22 +30,22 @@ impl<'a> SchemeSurface<'a> {
 }
 
 impl SchemeSurface<'_> {
-    /// Vertices and triangles of the body, where the scheme shows them.
+    /// Vertices and triangles of the body; none where the scheme gives no mesh.
     fn mesh(&self) -> Option<ColliderMesh<'_>> {
         let surface = self.scheme.surface()?;
         Some((surface.positions.iter().map(|p| p.coords).collect(), surface.triangles))
     }
 }
 
-/// From so far away along a direction the nearest point of a body is the one that reaches farthest
-/// along it, metres: for a body 1 m wide it is off by half a micrometre.
+/// A query point at this distance along a direction, metres, finds the point of the body that is
+/// farthest along that direction; for a body 1 m wide the error is half a micrometre.
 const FAR: f64 = 1e6;
 
-/// Looks from far away, each from above what the last one found: a body may stand far from the
-/// origin.
+/// Number of such queries, each from above the point that the last one found: a body may be far
+/// from the origin.
 const LOOKS: usize = 3;
 
-/// No garment is farther from its body, metres: stands for a reach without limit.
+/// No garment is farther from its body, metres. Used for a reach without limit.
 const ANYWHERE: f64 = 100.0;
 
 impl CollisionSurface for SchemeSurface<'_> {

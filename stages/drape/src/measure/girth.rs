@@ -18,10 +18,11 @@ const LOWER: (u32, f64) = (20, 0.005);
 /// A waist seam is not always at the body's waist: the narrowest of this many steps above and below
 /// counts.
 const WAIST: u32 = 4;
-/// Cloth narrower than the body by more than this share is told; a tape on a mesh of 16 mm is not
-/// truer.
+/// Cloth narrower than the body by more than this share gives a warning; a tape on a mesh of 16 mm
+/// is no more exact.
 const NARROW: f64 = 0.02;
-/// Cloth around the bust of more than this many times the body's is told: more than any coat's.
+/// Cloth around the bust of more than this many times the body's girth gives a warning: no coat has
+/// more.
 const WIDE: f64 = 1.6;
 
 /// The girths of a garment where it closes around its body, by level.
@@ -49,7 +50,7 @@ pub fn girths(garment: &Garment, body: &Body) -> BTreeMap<String, GirthFigures> 
     LEVELS.iter().filter_map(|level| of(level)).collect()
 }
 
-/// Tells of a garment that is too small or too large for its body.
+/// Warns of a garment that is too small or too large for its body.
 pub(super) fn tell(girths: &BTreeMap<String, GirthFigures>, cx: &Context) {
     for (level, g) in girths {
         let cm = |m: f64| (m * 100.0).round();
@@ -178,8 +179,8 @@ mod tests {
 
     const COLUMNS: usize = 200;
 
-    /// A tube of 95 cm of cloth in waves around the axis, 20 cm high, its ends sewn together where
-    /// told so.
+    /// A tube of 95 cm of cloth in waves around the axis, 20 cm high, its ends sewn together if
+    /// `sewn`.
     fn tube(sewn: bool) -> Garment {
         let flat = |x: f64, y: f64| Point2::new(0.95 * x, 0.2 * y);
         let grid = ClothGrid { columns: COLUMNS, rows: 4, flat, lift: |p| Point3::new(p.x, p.y, 0.0) };

@@ -1,6 +1,6 @@
 //! What a person would look at twice on a garment that keeps its limits.
 //!
-//! Four signs, told as warnings: a seam that stands out as a fin (both pieces lie back to back
+//! Four signs, reported as warnings: a seam that stands out as a fin (both pieces lie back to back
 //! along it), a shoulder seam that stands off the body, a hem that hangs lower on one side, and a
 //! photo that is drawn out. None of them is a fault of the solver; they come from the pattern, the
 //! pose or the photo. Cost: one pass over seams, triangles and the lowest rim.
@@ -16,7 +16,7 @@ const FIN: f64 = 0.08;
 /// A shoulder seam stands off where its cloth is farther from the body than this at one place in
 /// twenty, metres.
 const OFF: f64 = 0.035;
-/// And is not looked for farther away, metres.
+/// Cloth farther from the body than this is not looked at, metres.
 const REACH: f64 = 0.2;
 /// A hem hangs unevenly from this difference on, metres.
 const UNEVEN: f64 = 0.03;

@@ -1,8 +1,8 @@
 //! Whether the garment is still in its place on the body.
 //!
-//! Solvers tell how far the upper edge of all that is sewn together has sunk, as a share of the
-//! root of its area. Here that way is held against the height of its tallest piece: a wide gathered
-//! skirt has much cloth, and lies on the floor all the same once it has sunk by its own height.
+//! Solvers report how far the upper edge of all that is sewn together has sunk, as a share of the
+//! root of its area. Here that distance is compared with the height of its tallest piece: a wide
+//! gathered skirt has much cloth, yet lies on the floor once it has sunk by its own height.
 
 use super::parts::{named, parts};
 use std::collections::BTreeSet;
@@ -13,7 +13,7 @@ use toile_core::prelude::*;
 /// some centimetres.
 const LEAST_HEIGHT: f64 = 0.15;
 
-/// For each panel the share of it that is still in its place; empty where no solver told.
+/// For each panel the share of it that is still in its place; empty where no solver reported it.
 fn shares(garment: &Garment, part: &[usize]) -> Vec<f64> {
     let height = |p: &GarmentPanel| {
         let y = || garment.rest[p.vertices.clone()].iter().map(|p| p.y);
@@ -28,8 +28,8 @@ fn shares(garment: &Garment, part: &[usize]) -> Vec<f64> {
     garment.status.on_body.iter().zip(part).map(share).collect()
 }
 
-/// The share that is still in its place of the panel that has slid farthest; nothing where no
-/// solver told.
+/// The share that is still in its place of the panel that has slid farthest; none where no solver
+/// reported it.
 pub(super) fn least(garment: &Garment) -> Option<f64> {
     shares(garment, &parts(garment)).into_iter().reduce(f64::min)
 }

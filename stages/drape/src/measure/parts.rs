@@ -9,9 +9,9 @@ use std::collections::BTreeSet;
 use toile_core::artifact::{Garment, Shortfall, quantile};
 use toile_core::prelude::*;
 
-/// Edges that start nearer to each other than this were to be one, metres.
+/// Edges that start nearer to each other than this are meant to be one, metres.
 const NEAR: f64 = 0.06;
-/// And have come apart where they end farther from each other than this, metres.
+/// Such edges have come apart if they end farther from each other than this, metres.
 const APART: f64 = 0.12;
 /// Two parts started edge to edge where this share of the free edge of either did.
 const EDGE: f64 = 0.25;

@@ -20,14 +20,14 @@ use toile_core::prelude::*;
 /// Depth below which a vertex on the skin does not count as inside the body, metres.
 const SKIN_TOLERANCE: f64 = 1e-4;
 
-/// Measures the garment and holds it against its quality limits.
+/// Measures the garment and compares it with its quality limits.
 ///
 /// A pipeline gets this stage by itself; name it in the file to set other limits. A result that
 /// misses a limit is written all the same, with exit code 4: so does a garment that has slid off
 /// the body or has come apart. Where a flattener stands behind, the garment is judged by the
 /// pattern that it was sewn from; the flat pieces have figures of their own, `flat`. What looks odd
-/// on a garment that keeps them is told in warnings: seams that stand out as fins, shoulders that
-/// stand off, an uneven hem, a photo that is drawn out.
+/// on a garment within its limits is reported in warnings: seams that stand out as fins, shoulders
+/// that stand off, an uneven hem, a photo that is drawn out.
 #[stage(
     role = Writer,
     version = 8,
@@ -52,7 +52,7 @@ pub struct Measure {
     #[param(default = 0.05, min = 0.0, max = 10.0)]
     max_strain: f64,
     /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, as a
-    /// share: they lie on the body or hang together with it through cloth that is stretched by 0.5
+    /// share: they lie on the body or are connected with it through cloth that is stretched by 0.5
     /// % and more, and the cloth there is longer in some direction than it was cut, by at least as
     /// much. Beyond it the garment is too small for the body (woven cotton tears at some 25 %);
     /// from `max_strain` on a warning names the panel.

@@ -56,7 +56,7 @@ impl FigureLimits {
                 "the cloth was still moving when the solver stopped; give it more steps, or make the mesh coarser".into()
             })),
             (FastFinish, (g.steps == 0 && g.converged).then(|| {
-                "the garment was not draped: the solver called it at rest before its first step; see that the cloth has weight and starts off the body".into()
+                "the garment was not draped: the solver found it at rest before its first step; see that the cloth has weight and starts off the body".into()
             })),
         ];
         let told = all.into_iter().filter_map(|(code, message)| Some((code, message?)));

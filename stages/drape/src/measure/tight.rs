@@ -1,13 +1,13 @@
 //! Cloth that the body stretches.
 //!
 //! Where cloth lies taut on a body, its strain is the pattern's: it is cut narrower than the body
-//! is there. Such cloth is told of, and not held against the solver. A triangle is taut where all
-//! of it lies on the body and it is stretched in some direction. So is cloth that spans a hollow of
-//! the body, and cloth around it in which the pull fades out: what is stretched by more than its
-//! weight could, and hangs together with a triangle on the body through cloth that is stretched so.
-//! What of a taut triangle is shorter in another direction, by no more, is drawn so by that stretch
-//! (shear, Poisson's ratio), and counts with it. Limit: cloth that friction holds stretched on the
-//! body, though the pattern is wide enough, counts too.
+//! is there. Such cloth is reported, and not counted as an error of the solver. A triangle is taut
+//! where all of it lies on the body and it is stretched in some direction. So is cloth that spans a
+//! hollow of the body, and cloth around it in which the pull fades out: what is stretched by more
+//! than its weight could stretch it, and is connected with a triangle on the body through cloth
+//! that is stretched so. What of a taut triangle is shorter in another direction, by no more, is
+//! drawn so by that stretch (shear, Poisson's ratio), and counts with it. Limit: cloth that
+//! friction holds stretched on the body, though the pattern is wide enough, counts too.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{BodyContact, Garment, GarmentPanel, Shortfall, quantile};
@@ -64,7 +64,7 @@ impl Tight {
         Self { edges: garment.flat_lengths().into_iter().map(edge).collect(), taut }
     }
 
-    /// Whether the body stretches a triangle with these vertices, as far as its area tells: it is
+    /// Whether the body stretches a triangle with these vertices, as far as its area shows: it is
     /// stretched in both directions by no more than its greatest stretch, or drawn smaller by it.
     pub fn stretches_triangle(&self, vertices: &[u32; 3], flat: f64, now: f64) -> bool {
         let within = |s: &f64| now / flat <= (1.0 + s).powi(2) && now / flat >= 1.0 - s;
@@ -96,8 +96,8 @@ impl Tight {
         garment.panels.iter().map(of).reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 
-    /// What a user is told of cloth that is taut: a warning from a strain of `from` on, a limit
-    /// that is missed from `limit` on.
+    /// The message about taut cloth: a warning from a strain of `from` on, a missed limit from
+    /// `limit` on.
     pub(super) fn judge(&self, garment: &Garment, from: f64, limit: f64, cx: &Context) -> Option<Shortfall> {
         let (name, strain) = self.tightest(garment).filter(|(_, strain)| *strain > from.min(limit))?;
         let percent = |share: f64| format!("{:.1} %", share * 1e2);
@@ -114,8 +114,8 @@ impl Tight {
     }
 }
 
-/// Which triangles the body stretches: stretched ones that lie on it, and drawn ones that hang
-/// together with it.
+/// Which triangles the body stretches: stretched ones that lie on it, and drawn ones that are
+/// connected with it.
 fn taut_triangles(garment: &Garment, on: &[bool], strains: &[f64]) -> Vec<bool> {
     let on = |v: &u32| on[*v as usize];
     let lies = |(t, s): (&[u32; 3], &f64)| *s > 0.0 && t.iter().all(on) || *s > DRAWN && t.iter().any(on);

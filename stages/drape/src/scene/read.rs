@@ -23,7 +23,7 @@ use toile_geometry::volume::Aabb;
 /// them.
 ///
 /// The form is described in docs/reference/scene.md; benchmarks of other programs use it as well.
-/// The garment's vertices keep the order of the file, so that a result can be held against it. A
+/// The garment's vertices keep the order of the file, so that a result can be compared with it. A
 /// body that exporters left with split vertices, doubled or flat triangles is mended, as `BodyObj`
 /// does.
 #[stage(
@@ -49,7 +49,7 @@ pub struct Scene {
     pub units: Units,
 }
 
-/// Share of the stage's time that distances where they are asked for save, on the skirt.
+/// Share of the stage's time that distances where they are requested save, on the skirt.
 const SHARE: f64 = 0.75;
 
 #[stage]

@@ -90,7 +90,7 @@ fn rest_keeps_cloth_off_the_sharp_edges_of_a_pipelines_body() {
         let (garment, body, collider, phases) = through_files(&generate::cover(body, 12, 0.3)).unwrap();
         let rest = StaticEquilibrium { bending_continuation: false, ..StaticEquilibrium::default() };
         let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
-        // On the plate it is told as not at rest.
+        // On the plate it is reported as not at rest.
         assert!(draped.status.converged || k == 1, "{k}");
         let pairs = body_crossings(&draped.positions, &draped.triangles, &body);
         assert_eq!(pairs, 0, "{k}");

@@ -1,8 +1,8 @@
 //! Darts and cuts where a fitted piece strains more than its cloth bears.
 //!
-//! Again and again, while the strain spread over a neighbourhood passes the limit: from the place
-//! of most strain and from that of most curvature the ways to the boundary are tried, down and up
-//! the grain and across it (and their mirror images, if the piece is symmetric); each is cut and
+//! Repeated while the strain, averaged over a neighbourhood, is above the limit: from the place of
+//! most strain and from that of most curvature the paths to the boundary are tried, down and up the
+//! grain and across it (and their mirror images, if the piece is symmetric); each is cut and
 //! flattened, and the one that saves most energy is kept, those along the grain counting a quarter
 //! more. Ways much longer than the shortest are not tried. Proposals end when the limit is met,
 //! when no cut saves enough of what is left, or at the number that is allowed. Cost: up to eight

@@ -19,7 +19,7 @@ pub struct MirrorPair {
     pub b: usize,
     /// For each vertex of `a` the vertex of `b` that it is the image of.
     pub partner: Vec<u32>,
-    /// Whether the triangles are mirror images, too: only then are their solutions.
+    /// Whether the triangles are mirror images, too: only then are their solutions mirror images.
     pub exact: bool,
 }
 

@@ -164,7 +164,7 @@ pub(super) fn align(a: &MeasuredOutline, b: &MeasuredOutline) -> (RigidMotion, f
     (fit(&p, &shifted), shift as f64 / SAMPLES as f64)
 }
 
-/// Which length of one outline is which of the other.
+/// Correspondence between lengths along one outline and the other.
 #[derive(Debug, Clone)]
 pub(super) struct Correspondence {
     /// Pairs of lengths, the first increasing within one round, the second within one round from

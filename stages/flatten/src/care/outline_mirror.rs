@@ -47,7 +47,7 @@ const LIKE: f64 = 0.05;
 /// How often the motion that lays two outlines over each other is fitted.
 const FITS: usize = 4;
 
-/// Weight that draws a vertex to a place: as stiff as a triangle, so that the piece gives way for
+/// Weight that draws a vertex to a place: as stiff as a triangle, so that the piece deforms to fit
 /// its seams.
 const DRAW_WEIGHT: f64 = 1.0;
 

@@ -51,7 +51,7 @@ pub struct CareReport {
 /// other's edges decide, not how far its own are from straight.
 const STRAIGHT: f64 = 1e-4;
 
-/// Corrects the flat pieces in place; `flats` and `placements` have one entry a piece.
+/// Corrects the flat pieces in place; `flats` and `placements` have one entry per piece.
 ///
 /// # Errors
 /// [`FlattenError::InvalidParameter`], lists of other lengths than that of the pieces,

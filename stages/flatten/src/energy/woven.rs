@@ -2,12 +2,12 @@
 //!
 //! The pattern's x is the weft, its y the warp. From the flat pattern to the garment a unit vector
 //! along the weft stretches to `w = |J^-1 e_x|`, one along the warp to `p = |J^-1 e_y|`, and their
-//! angle leaves a right angle by `g`. The density is
-//! `kw/8 (w - 1/w)^2 + kp/8 (p - 1/p)^2 + ks/2 tan^2 g`: to second order in the strains the elastic
-//! energy of a membrane of these three stiffnesses, and infinite where a triangle loses its area.
-//! With the gradients a and b of the flat x and y on the garment, P = a.a, Q = b.b, R = a.b, D = P
-//! Q - R^2: w^2 = Q / D, p^2 = P / D, tan^2 g = R^2 / D. Cost: some 200 operations a triangle, and
-//! 4 x 4 eigenvalues where the Hessian is not positive.
+//! angle leaves a right angle by `g`. The density is `kw/8 (w - 1/w)^2 + kp/8 (p - 1/p)^2 + ks/2
+//! tan^2 g`: to second order in the strains the elastic energy of a membrane of these three
+//! stiffnesses, and infinite where a triangle loses its area. With the gradients a and b of the
+//! flat x and y on the garment, P = a.a, Q = b.b, R = a.b, D = P Q - R^2: w^2 = Q / D, p^2 = P / D,
+//! tan^2 g = R^2 / D. Cost: some 200 operations per triangle, and 4 x 4 eigenvalues where the
+//! Hessian is not positive.
 
 use super::{Derivatives, EnergyDensity, Hessian, project};
 use crate::error::FlattenError;
@@ -25,7 +25,7 @@ pub struct WovenStiffness {
 }
 
 impl WovenStiffness {
-    /// A plain cotton weave: shear gives forty times more easily than the threads.
+    /// A plain cotton weave: shear is forty times softer than the threads.
     pub const COTTON: Self = Self { warp: 800.0, weft: 800.0, shear: 20.0 };
 }
 
@@ -33,7 +33,7 @@ impl WovenStiffness {
 /// stiffest.
 const MOST_RATIO: f64 = 1e6;
 
-/// The energy of [`WovenStiffness`], its stiffest direction counted as 4.
+/// The energy of [`WovenStiffness`], scaled so that its stiffest direction has stiffness 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WovenEnergy {
     warp: f64,

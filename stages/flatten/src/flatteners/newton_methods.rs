@@ -59,9 +59,9 @@ pub fn springs(
 }
 
 /// Flattens for woven cloth: the warp (along the grain, pattern y) and the weft keep their lengths,
-/// shear gives way.
+/// shear is soft.
 ///
-/// The mean grain is held upright while the threads settle.
+/// The mean grain is held upright while the energy is minimised.
 ///
 /// # Errors
 /// As [`symmetric_dirichlet`], and stiffnesses out of range.

@@ -1,4 +1,4 @@
-//! Cutting: corners that stay together become vertices, triangles that hang together become pieces.
+//! Cutting: corners that stay together become vertices, connected triangles become pieces.
 
 use super::facing::inside_out;
 use super::seams::find_seams;
@@ -21,7 +21,7 @@ pub fn split_components(
     islands_by_group(positions, triangles, &vec![0; triangles.len()])
 }
 
-/// Cuts where the two sides of an edge have different UV indices; `uv` has three a triangle, as
+/// Cuts where the two sides of an edge have different UV indices; `uv` has three per triangle, as
 /// OBJ's `f v/vt`.
 ///
 /// # Errors
@@ -43,7 +43,7 @@ pub fn islands_by_uv(
     gather(positions, triangles, &joined(triangles, label)?)
 }
 
-/// Cuts where two groups (materials, panels) meet; `groups` has one a triangle.
+/// Cuts where two groups (materials, panels) meet; `groups` has one per triangle.
 ///
 /// # Errors
 /// As [`islands_by_uv`].

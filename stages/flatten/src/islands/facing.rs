@@ -49,7 +49,8 @@ fn votes(triangles: &[[u32; 3]], opposite: &[u32], component: &[u32]) -> BTreeMa
     votes
 }
 
-/// Marks what hangs together with `seed`, against it; returns the members.
+/// Finds all that is connected with `seed` by votes, marks what faces the other way as turned, and
+/// returns all of it.
 fn compare(
     seed: usize,
     votes: &BTreeMap<(usize, usize), i64>,

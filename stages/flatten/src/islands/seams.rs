@@ -87,7 +87,7 @@ fn follows(pieces: &[SurfacePiece], last: &EdgePair, next: &EdgePair) -> bool {
     after(&last.a) == next.a.place && after(&next.b) == last.b.place
 }
 
-/// A run may go on over the place where its loop begins.
+/// A run may continue across the start of its loop.
 fn join_ends(pieces: &[SurfacePiece], runs: &mut Vec<Vec<EdgePair>>) {
     let mut i = 0;
     while i < runs.len() {

@@ -1,9 +1,9 @@
 //! Sparse Cholesky factor of a symmetric (or Hermitian) matrix on the graph of a mesh: `A = L L^H`.
 //!
-//! One number or a 2 x 2 block a vertex and a pair of coupled vertices. The order comes from nested
-//! dissection, the factor is supernodal (by the `faer` library). The symbolic part is done once a
-//! graph and reused. One thread, so the bits never change. For n vertices the factor holds about n
-//! log n numbers and takes about n^1.5 products.
+//! One number or a 2 x 2 block per vertex and a pair of coupled vertices. The order comes from
+//! nested dissection, the factor is supernodal (by the `faer` library). The symbolic part is done
+//! once a graph and reused. One thread, so the bits never change. For n vertices the factor holds
+//! about n log n numbers and takes about n^1.5 products.
 
 use super::graph::Graph;
 use super::vectors::leave_vectors;
@@ -27,8 +27,8 @@ pub(crate) struct CholeskyFactor<T> {
 }
 
 impl<T: ComplexField + Copy> CholeskyFactor<T> {
-    /// Analyses the pattern for `width` numbers a vertex, 1 or 2; `order` lists the vertices in the
-    /// order of elimination.
+    /// Analyses the pattern for `width` numbers per vertex, 1 or 2; `order` lists the vertices in
+    /// the order of elimination.
     ///
     /// # Errors
     /// [`FlattenError::Factorization`] if memory runs out.
@@ -122,8 +122,8 @@ fn expanded(order: &[u32], width: usize) -> Vec<u32> {
     order.iter().flat_map(|&v| (0..width).map(move |k| width * v + k)).collect()
 }
 
-/// Where the values of a matrix with one number a vertex lie: the diagonal of vertex `i`, then its
-/// pairs in order.
+/// Where the values of a matrix with one number per vertex lie: the diagonal of vertex `i`, then
+/// its pairs in order.
 #[must_use]
 pub(crate) fn slot(graph: &Graph, i: usize) -> usize {
     graph.start(i) + i
@@ -133,7 +133,7 @@ pub(crate) fn slot(graph: &Graph, i: usize) -> usize {
 /// column.
 ///
 /// The first column holds two numbers of the diagonal block, the second one; each pair then has two
-/// numbers a column.
+/// numbers per column.
 #[must_use]
 pub(crate) fn block_slots(graph: &Graph, i: usize) -> [usize; 2] {
     let first = 4 * graph.start(i) + 3 * i;

@@ -61,7 +61,7 @@ impl Assembly {
         &self.values
     }
 
-    /// Two numbers a vertex.
+    /// Two numbers per vertex.
     pub(super) fn gradient(&self) -> &[f64] {
         &self.gradient
     }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// The share of the way to the first flip that is gone at most.
 const SHORT_OF_FLIP: f64 = 0.9;
 
-/// The share of the promised fall that is asked for (Armijo).
+/// The share of the promised fall that is requested (Armijo).
 const ENOUGH: f64 = 1e-4;
 
 /// Halvings before the search gives up: the direction no longer helps in the digits at hand.

@@ -76,8 +76,9 @@ const NEAR: f64 = 0.1;
 /// Where their sum was not positive, the next try waits until a step saves this much less.
 const NEARER: f64 = 0.01;
 
-/// What is added to the diagonal of a matrix that rounding has left without a factor (Levenberg
-/// 1944): first this share of its largest entry, then each time so many times more, so many times.
+/// Shift of the diagonal of a matrix that has no factor because of rounding (Levenberg 1944):
+/// [`LEAST_SHIFT`] times its largest entry first, then each time larger by a factor, a limited
+/// number of times.
 const LEAST_SHIFT: f64 = 1e-14;
 const SHIFT_GROWTH: f64 = 30.0;
 const MOST_SHIFTS: usize = 6;

@@ -1,5 +1,5 @@
 //! Least squares conformal maps (Lévy, Petitjean, Ray, Maillot 2002), as one Hermitian system of
-//! one complex number a vertex.
+//! one complex number per vertex.
 //!
 //! With `z = x + i y` and `w_k = g_k.x + i g_k.y` of the hat functions' gradients, a triangle's map
 //! is conformal where `sum_k w_k z_k = 0`; minimised is the sum over triangles of area times the

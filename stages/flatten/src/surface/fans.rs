@@ -1,4 +1,4 @@
-//! Vertices from corners: corners are one vertex where their triangles hang together by edges.
+//! Vertices from corners: corners are one vertex where their triangles are connected by edges.
 //!
 //! A vertex where only tips touch (a bow-tie) becomes several. Used for repair and for cutting: cut
 //! edges join no corners.

@@ -1,7 +1,7 @@
 //! A checked surface: one connected, oriented, manifold piece with at least one boundary loop.
 //!
 //! Checks, in order: lists not empty, places finite, indices in range, areas above zero, at most
-//! two triangles an edge, one component, two sides, a boundary, no handles. Repairs, each counted:
+//! two triangles per edge, one component, two sides, a boundary, no handles. Repairs, each counted:
 //! triangles that run against the others are turned (the majority stays), vertices where only the
 //! tips of triangles touch are split, vertices without triangles are left out. Cost: one sort of
 //! the 3 t edges of t triangles, else linear. Limit: 2^30 triangles or vertices.
@@ -168,7 +168,7 @@ impl PieceSurface {
     ///
     /// # Errors
     /// [`SurfaceError::Degenerate`] for edges that span no area or are turned over, and for
-    /// triangles that there are none of.
+    /// triangles that do not exist.
     pub fn with_cut_shapes(
         mut self,
         mut shapes: Vec<(u32, [Vector2<f64>; 2])>,

@@ -1,8 +1,8 @@
 //! Turning triangles until all run the same way.
 //!
-//! From a first triangle over the edges: a neighbour that walks the common edge in the same
-//! direction is turned. Where that turns more than half, the others are turned instead, so the
-//! majority's right side stays the right side.
+//! Method: from a first triangle across the edges, each neighbour that runs along the common edge
+//! in the same direction is turned. If that turns more than half of the triangles, the others are
+//! turned instead, so that the right side of the majority stays the right side.
 
 use super::edges::{FREE, ends};
 use crate::error::SurfaceError;
@@ -62,7 +62,7 @@ fn find_turns(triangles: &[[u32; 3]], opposite: &[u32]) -> Result<Vec<TriangleTu
     Ok(turns)
 }
 
-/// Decides about all triangles that hang together with `seed`.
+/// Decides about all triangles that are connected with `seed`.
 fn turn_neighbours(
     triangles: &[[u32; 3]],
     opposite: &[u32],

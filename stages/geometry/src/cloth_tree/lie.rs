@@ -1,4 +1,4 @@
-//! Which triangles lie in others: so near that nothing tells them apart.
+//! Which triangles lie in others: so near that their sides cannot be distinguished.
 
 use super::ClothTree;
 use crate::closest::on_triangle;

@@ -7,8 +7,8 @@ use crate::pair::Pair;
 use crate::volume::BoundingVolume;
 
 impl<V: BoundingVolume> ClothTree<V> {
-    /// The same, where only triangles of `active` nodes look for what they may meet: what is not
-    /// active meets nothing else that is not.
+    /// The same, but only triangles with `active` nodes search for pairs: a pair without an active
+    /// node is not found.
     #[must_use]
     pub fn with_active(self, active: &[bool]) -> Self {
         Self { active: Some(self.active(active)), ..self }
@@ -34,9 +34,9 @@ impl<V: BoundingVolume> ClothTree<V> {
         pairs
     }
 
-    /// The tree of the triangles all of whose nodes are among `nodes`, ascending; `index` tells
-    /// where in that list each node of the whole comes, and `layout` holds a place for each of the
-    /// list. At least one triangle must be.
+    /// The tree of the triangles all of whose nodes are among `nodes`, ascending; `index` gives
+    /// each node's position in that list, and `layout` has one entry for each node of the list. At
+    /// least one triangle must be.
     #[must_use]
     pub fn part(&self, nodes: &[u32], index: &[u32], layout: &[Vec3]) -> Self {
         let own = |t: &[u32; 3]| t.map(|v| index[v as usize]);

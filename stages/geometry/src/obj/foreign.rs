@@ -40,7 +40,7 @@ const BEGINNINGS: [(&[u8], &str); 33] = [
     (b"<!doctype html", "a web page"),
 ];
 
-/// How far into a file a word is looked for that tells its format.
+/// How many bytes of a file are searched for a word that names its format.
 const LOOK: usize = 4096;
 
 /// The format of a file that is no OBJ, with its article: `a binary STL`. None where the bytes may

@@ -26,7 +26,7 @@ struct Face {
 /// and normal indices).
 ///
 /// Indices may be negative, faces may stand before their vertices and have any number of corners;
-/// [`decode`] and [`NumberedLines`] tell which encodings and line endings are read.
+/// [`decode`] and [`NumberedLines`] say which encodings and line endings are read.
 ///
 /// # Errors
 /// [`ObjError`] with the line.

@@ -1,4 +1,5 @@
-//! The pieces of a triangle mesh: what hangs together by vertices, and which of it is closed.
+//! The pieces of a triangle mesh: its components connected by vertices, and which of them are
+//! closed.
 
 use super::Mesh;
 use crate::components::groups;

@@ -107,7 +107,7 @@ fn unused(mesh: &Mesh) -> usize {
     is_used(mesh).iter().filter(|u| !**u).count()
 }
 
-/// The mesh without vertices of no triangle, the others in their order.
+/// The mesh without vertices that no triangle uses; the others keep their order.
 pub(super) fn without_unused(mesh: Mesh) -> Mesh {
     let used = is_used(&mesh);
     if !used.contains(&false) {

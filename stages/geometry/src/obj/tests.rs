@@ -191,7 +191,7 @@ fn what_bounds_nothing_is_dropped_and_counted() {
 
 #[test]
 fn a_flat_triangle_between_three_vertices_in_a_line_gives_its_side_away() {
-    // The cube's edge from 1 to 2 has a vertex in its middle that one of its faces does not know.
+    // The cube's edge from 1 to 2 has a vertex in its middle that one of its faces does not use.
     let text = CUBE.replace("f 1 2 6 5\n", "v 0.5 0 0\nf 1 9 6 5\nf 9 2 6\nf 1 2 9\n");
     let (mesh, told) = body(text);
     assert!(is_closed(&mesh) && (volume(&mesh) - 1.0).abs() < 1e-12, "{mesh:?}");

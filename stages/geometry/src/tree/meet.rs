@@ -19,10 +19,10 @@ pub struct Meeting<'m, V, T> {
     pub things: &'m [V],
     /// How near they must be.
     pub reach: f64,
-    /// Which parts and which things look for others; without it all do. Two of which neither looks
-    /// are passed over.
+    /// Which parts and which things search for others; without it all do. A pair of which neither
+    /// searches is left out.
     pub active: Option<(&'m [bool], &'m [bool])>,
-    /// Told of every two things whose volumes are within reach, the earlier one first.
+    /// Called with every two things whose volumes are within reach, the earlier one first.
     pub visit: &'m (dyn Fn(usize, usize, &mut Vec<T>) + Sync),
 }
 
@@ -103,7 +103,7 @@ impl<V: BoundingVolume, T: Send> TreeWalk<'_, V, T> {
     }
 }
 
-/// Both, one after the other or side by side: the same order of what they find.
+/// Runs both, one after the other or in parallel: their results are in the same order.
 fn both<T: Send>(
     levels: u32,
     out: &mut Vec<T>,

@@ -93,7 +93,7 @@ impl<const D: usize> BoundingVolume for KDop<D> {
         let s = Self::project(p);
         let gap = |i: usize| (self.min[i] - s[i]).max(s[i] - self.max[i]).max(0.0);
         let straight = (0..3).map(|i| gap(i) * gap(i)).sum();
-        // A hair less, so that the rounding of the lengths is on the safe side.
+        // Slightly less, so that the rounding of the lengths is on the safe side.
         let slanted = (3..D).map(|i| gap(i) * Self::length(i).1 * (1.0 - PAD)).fold(0.0, f64::max);
         f64::max(straight, slanted * slanted)
     }

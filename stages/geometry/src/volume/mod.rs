@@ -1,6 +1,6 @@
 //! Bounding volumes: what a hierarchy may wrap its triangles in.
 //!
-//! From loosest and cheapest to tightest and dearest: sphere, axis-aligned box, discrete
+//! From loosest and cheapest to tightest and most expensive: sphere, axis-aligned box, discrete
 //! orientation polytope (k-DOP), oriented box. A tighter volume makes fewer pair tests, each of
 //! which costs more; for cloth, whose volumes change at every step, the cheap ones mostly win.
 //!

@@ -24,7 +24,7 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// The box along given axes that spans a range on each, a hair wider.
+    /// The box along given axes that spans a range on each, widened slightly against rounding.
     fn along(axes: Matrix3<f64>, low: Vec3, high: Vec3) -> Self {
         let center = axes * ((low + high) / 2.0);
         let half = (high - low) / 2.0;

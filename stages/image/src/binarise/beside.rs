@@ -1,4 +1,4 @@
-//! A thing that lies in a photo apart from others, and what is told of one beside the garment.
+//! A thing that lies in a photo apart from others, and the warning about one beside the garment.
 
 use super::marks::PhotoPlace;
 use super::small::SmallPhoto;
@@ -98,7 +98,7 @@ impl Thing {
     }
 }
 
-/// Tells of a thing that lies beside the garment which was taken, and how to take it instead: the
+/// Warns of a thing that lies beside the garment that was taken, and how to take it instead: the
 /// `second` piece of the mask, or one of the `things` that the mask leaves out.
 pub(super) fn tell_beside(
     photo: &Photo,
@@ -107,7 +107,7 @@ pub(super) fn tell_beside(
     things: impl FnOnce() -> Vec<Thing>,
     cx: &Context,
 ) {
-    // Of a mirror image it was told of its photo.
+    // A mirror image gives no warning: its photo gave it.
     if photo.mirrored {
         return;
     }

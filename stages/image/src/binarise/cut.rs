@@ -65,7 +65,8 @@ impl CutGrid {
         self.nodes[i].terminal = capacity;
     }
 
-    /// Sets what it costs to part pixel `i` from its neighbour in direction `d`, both ways.
+    /// Sets the capacity of the link between pixel `i` and its neighbour in direction `d`, both
+    /// ways.
     pub(super) fn set_link(&mut self, i: usize, d: usize, capacity: i32) {
         let j = self.step(i, d);
         self.nodes[i].to[d] = capacity;

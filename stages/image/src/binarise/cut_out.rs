@@ -6,8 +6,8 @@
 //! What is opaque in those is convex and the same turned by half; a garment is not both.
 //!
 //! Cost: two looks at every pixel's opacity, and the hull of the rows' ends (Andrew's monotone
-//! chain, 1979). Limits: a photo whose perspective was set right may be convex alone, as a skirt
-//! is; what is taken for a skirt is told.
+//! chain, 1979). Limits: a photo whose perspective was corrected may be merely convex, as a skirt
+//! is; a warning says what is taken for a skirt.
 
 use super::tone::{OPAQUE, mark, rim_share};
 use image::GrayImage;
@@ -20,7 +20,8 @@ const LEAST_TRANSPARENT: f64 = 0.02;
 /// From this share of its hull on, the opaque part is convex.
 const CONVEX: f64 = 0.97;
 
-/// Up to this share of the opaque part, what differs from it turned by half does not count.
+/// The opaque part counts as symmetric if at most this share of it differs from itself turned by
+/// 180 degrees.
 const SYMMETRIC: f64 = 0.03;
 
 /// The garment of a picture whose ground was cut away.
@@ -52,7 +53,7 @@ pub(super) fn cut_out(photo: &Photo) -> Option<CutOut> {
     if differs <= SYMMETRIC * opaque { None } else { found(false) }
 }
 
-/// Area of the convex hull of the opaque pixels, squares of a pixel.
+/// Area of the convex hull of the opaque pixels, in pixels.
 fn hull_area(alpha: &GrayImage) -> f64 {
     let mut corners: Vec<[i64; 2]> = Vec::new();
     for (y, row) in (0..).zip(alpha.as_raw().chunks_exact(alpha.width().max(1) as usize)) {

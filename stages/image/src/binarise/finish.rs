@@ -65,8 +65,9 @@ pub fn mask_of(
 
 /// Cleans a raw mask and checks that it shows one whole garment.
 ///
-/// Transparent pixels are ground. Then opening, closing, the largest piece, its holes. Where a
-/// second piece is nearly as large, pieces that lie near each other are joined, which is told.
+/// Transparent pixels are ground. Then opening, closing, choice of the largest piece, filling of
+/// its small holes. Where a second piece is nearly as large, pieces that lie near each other are
+/// joined, with a warning.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidInput`] for no garment, and a garment cut by the frame.

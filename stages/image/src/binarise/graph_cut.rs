@@ -274,7 +274,7 @@ fn units(cost: f64) -> i32 {
     (cost * 1000.0).clamp(-1e8, 1e8) as i32
 }
 
-/// The share of the middle that `Background` must have found to be believed.
+/// The share of the middle that `Background` must have found for its mask to be used.
 const COVERED: f64 = 0.8;
 
 /// What is taken for garment and for ground at first.

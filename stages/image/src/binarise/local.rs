@@ -5,7 +5,7 @@
 //! binarization, Pattern Recognition 33, 2000), for a dark garment; a light one is looked at as its
 //! negative.
 //!
-//! Cost: tables of running sums, 12 bytes a pixel; 12 megapixels take about 0.12 s on two cores.
+//! Cost: tables of running sums, 12 bytes per pixel; 12 megapixels take about 0.12 s on two cores.
 //! Limits: made for uneven light. The window must be wider than what it parts: inside a garment
 //! that is wider than the window only its edge is found, and the inside is closed as a hole.
 
@@ -107,8 +107,8 @@ fn negative(mut grey: GrayImage) -> GrayImage {
     grey
 }
 
-/// Marks what is darker than its window (radius 1 to 2,000 px) asks for; past the frame the window
-/// ends.
+/// Marks what is darker than the threshold of its window (radius 1 to 2,000 px); the window ends at
+/// the frame.
 pub fn local(
     grey: &GrayImage,
     method: LocalMethod,

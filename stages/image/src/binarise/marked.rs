@@ -22,7 +22,8 @@ pub(super) fn marked(photo: &Photo, mask: &GrayImage) -> Photo {
     let pixel = |x: u32, y: u32| {
         let (x, y) = (i64::from(x), i64::from(y));
         let is_on = on(x, y) == Some(true);
-        // Off the photo is neither: a garment that goes on there has no outline, but a band.
+        // Outside of the photo there is neither: a garment that extends there has a band, and no
+        // outline.
         let around = [(reach, 0), (-reach, 0), (0, reach), (0, -reach)].map(|(dx, dy)| on(x + dx, y + dy));
         let is_line = around.iter().any(|there| match there {
             Some(there) => *there != is_on,

@@ -9,10 +9,10 @@
 //! | `Difference` | colour against the same ground without the garment | a camera on a stand |
 //! | `GraphCut` | colour models and edges together | the hardest photos |
 //!
-//! All share what comes after (`finish`): clean-up, one piece, its holes, and the errors for no
-//! garment and a garment cut by the frame; of two garments the larger is kept, which is told. All
-//! take transparent pixels as ground; a picture whose ground was cut away has its mask already
-//! (`cut_out`).
+//! All share the steps that follow (`finish`): clean-up, choice of one piece, its holes, and the
+//! errors for no garment and for a garment cut by the frame. Of two garments the larger is kept,
+//! with a warning. Transparent pixels are ground to all of them; a picture whose ground is
+//! transparent already has its mask (`cut_out`).
 
 mod auto;
 mod background;

@@ -4,7 +4,7 @@
 //! marked pixel within the disc's half-width for that row (Serra, 1982). The distances along the
 //! rows are found once; the rest is a compare of bytes that the compiler vectorises.
 //!
-//! Cost: 2 r + 1 bytes a pixel, about 10 ms for 12 megapixels at radius 3. Limits: radius 100.
+//! Cost: 2 r + 1 bytes per pixel, about 10 ms for 12 megapixels at radius 3. Limits: radius 100.
 
 use image::GrayImage;
 use rayon::prelude::*;

@@ -32,7 +32,7 @@ pub(super) struct SmallPhoto {
 }
 
 impl SmallPhoto {
-    /// The photo brought down to at most `side` pixels on its longer side.
+    /// The photo reduced to at most `side` pixels on its longer side.
     pub(super) fn of(photo: &Photo, side: u32) -> SmallPhoto {
         let (pw, ph) = photo.pixels.dimensions();
         let factor = (f64::from(side) / f64::from(pw.max(ph))).min(1.0);

@@ -5,8 +5,8 @@
 //! distance is the mean absolute difference of the channels, so that one table of 766 weights
 //! serves.
 //!
-//! Cost: (2 radius + 1)^2 weights a pixel; 12 megapixels take about 0.7 s at radius 3 on two cores.
-//! Limits: slow at large radii; leaves a speck that differs strongly from all around it.
+//! Cost: (2 radius + 1)^2 weights per pixel; 12 megapixels take about 0.7 s at radius 3 on two
+//! cores. Limits: slow at large radii; leaves a speck that differs strongly from all around it.
 
 use super::bands::{CHANNELS, ClampedRows, by_bands, pad};
 use image::RgbImage;

@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn as_many_pixels_are_joined_as_their_width_allows() {
-        // 0.25 mm a pixel: two of them are half a millimetre.
+        // 0.25 mm per pixel: two of them are half a millimetre.
         assert_eq!(joint_of((4000, 3000), 1.0, 0.5e-3), 2);
         assert_eq!(joint_of((4000, 3000), 1.0, 0.499e-3), 1);
         assert_eq!(joint_of((4000, 3000), 0.5, 0.5e-3), 3, "a thousand pixels stay along the shorter side");

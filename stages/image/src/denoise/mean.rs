@@ -36,9 +36,9 @@ pub enum Neighbours {
 /// Takes sensor noise and weave out of the photo before it is binarised. The larger the radius, the
 /// more detail is lost. `Eight` averages a square of (2 radius + 1)^2 pixels, `Four` a diamond.
 ///
-/// Large photos are brought down first, whole pixels joined, as far as `pixel` allows: what follows
-/// them takes that much less time, and their grain goes as well. Textures are still taken from the
-/// photo as it was read.
+/// Large photos are reduced first, whole pixels joined, as far as `pixel` allows: what follows them
+/// takes that much less time, and their grain goes as well. Textures are still taken from the photo
+/// as it was read.
 #[stage(
     role = Denoiser,
     version = 2,

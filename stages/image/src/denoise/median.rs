@@ -1,10 +1,10 @@
 //! The median of a square, channel by channel.
 //!
 //! Radius 1 sorts nine values by a network of 19 exchanges (Smith, 1996), which the compiler
-//! vectorises. Larger radii keep one histogram a column and one for the window, each in two levels
-//! of 16 x 16 bins; moving the window by a pixel adds one column and takes one off, and the fine
-//! level is brought up to date only where the median lies (Perreault and Hebert, Median filtering
-//! in constant time, IEEE TIP 16(9), 2007).
+//! vectorises. Larger radii keep one histogram per column and one for the window, each in two
+//! levels of 16 x 16 bins; moving the window by a pixel adds one column and takes one off, and the
+//! fine level is brought up to date only where the median lies (Perreault and Hebert, Median
+//! filtering in constant time, IEEE TIP 16(9), 2007).
 //!
 //! Cost: 12 megapixels take 70 ms at radius 1 and about 0.5 s at any other on two cores.
 //!

@@ -1,10 +1,10 @@
 //! Canny's edge detector.
 //!
-//! Method (J. Canny, *A computational approach to edge detection*, 1986): Gaussian smoothing,
-//! Sobel gradient, non-maximum suppression across the gradient, hysteresis between two thresholds.
-//! Its edge pixels say where the garment ends; the place is then taken from the gradient's ridge
-//! to a fraction of a pixel. Cost: about 60 ns a pixel of the band. Limits: corners are rounded by
-//! the smoothing, and are put back as the intersection of their sides ([`super::corners`]).
+//! Method (J. Canny, *A computational approach to edge detection*, 1986): Gaussian smoothing, Sobel
+//! gradient, non-maximum suppression across the gradient, hysteresis between two thresholds. Its
+//! edge pixels say where the garment ends; the place is then taken from the gradient's ridge to a
+//! fraction of a pixel. Cost: about 60 ns per pixel of the band. Limits: corners are rounded by the
+//! smoothing, and are put back as the intersection of their sides ([`super::corners`]).
 
 use super::band::{BandPicture, PicturePatch, TileBand};
 use super::operator::{Accept, Operator, OperatorResponse, gaussian, gradient};
@@ -33,7 +33,7 @@ pub struct Canny {
     #[param(default = 1.4, min = 0.3, max = 10.0, unit = "pixels", trades)]
     sigma: f64,
     /// How much smoother the outline is between its corners than the edge that was seen: 2 to 3
-    /// quietens the ragged rim of a small photo, 1 keeps every wave.
+    /// smooths the ragged rim of a small photo, 1 keeps every wave.
     #[param(default = 3.0, min = 0.5, max = 6.0)]
     smooth: f64,
 }
@@ -107,7 +107,7 @@ fn non_maximum_suppression(magnitude: &PicturePatch, gx: &PicturePatch, gy: &Pic
     PicturePatch { side, data }
 }
 
-/// Marks what is above `low` and hangs together (8 neighbours) with something above `high`.
+/// Marks what is above `low` and connected (8 neighbours) with something above `high`.
 fn hysteresis<'a>(band: &'a TileBand, thin: &BandPicture<'a>, low: f32, high: f32) -> BandPicture<'a> {
     let mut marked = band.blank();
     let mut todo: Vec<[usize; 2]> = Vec::new();

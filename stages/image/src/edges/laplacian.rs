@@ -1,8 +1,8 @@
 //! The Laplacian.
 //!
 //! Method: zero crossings of the four-neighbour Laplacian (A. Rosenfeld and A. Kak, 1976). Cost:
-//! about 10 ns a pixel of the band. Limits: a second derivative without smoothing answers to grain
-//! first; it needs a denoiser before it.
+//! about 10 ns per pixel of the band. Limits: a second derivative without smoothing answers to
+//! grain first; it needs a denoiser before it.
 
 use super::band::{PicturePatch, TileBand};
 use super::operator::{Operator, OperatorResponse};

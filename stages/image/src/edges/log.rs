@@ -2,8 +2,8 @@
 //!
 //! Method: zero crossings of the second derivative of the smoothed picture (D. Marr and E.
 //! Hildreth, *Theory of edge detection*, 1980), by two separable kernels, which is exact. Cost:
-//! about 70 ns a pixel of the band. Limits: on curved rims zero crossings lie a little outside the
-//! edge.
+//! about 70 ns per pixel of the band. Limits: on curved rims zero crossings lie a little outside
+//! the edge.
 
 use super::band::{PicturePatch, TileBand};
 use super::operator::{Operator, OperatorResponse, gaussian};

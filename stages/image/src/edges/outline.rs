@@ -106,8 +106,8 @@ fn check_frame(photo: &Photo, mask: &Mask, cx: &Context) -> Result<(), StageErro
     };
     let touched =
         [(left == 0, "left"), (top == 0, "upper"), (right + 1 == m.0, "right"), (bottom + 1 == m.1, "lower")];
-    // How far a garment may touch the frame is the binariser's affair.
-    // Of a mirror image it was told of its photo.
+    // The binariser limits how far a garment may touch the frame. A mirror image gives no warning:
+    // its photo gave it.
     for (_, side) in touched.iter().filter(|t| t.0 && !photo.mirrored && !is_opacity(photo, mask)) {
         cx.warn(format!(
             "the garment in \"{}\" touches the photo's {side} border, and ends there",

@@ -2,7 +2,7 @@
 //!
 //! Method: gradient by central differences, averaged (1, 1, 1) across (J. Prewitt, *Object
 //! enhancement and extraction*, 1970); an edge is a ridge of its magnitude over a threshold. Cost:
-//! about 15 ns a pixel of the band. Limits: as Sobel's; slanted rims answer a little weaker.
+//! about 15 ns per pixel of the band. Limits: as Sobel's; slanted rims answer a little weaker.
 
 use super::band::TileBand;
 use super::operator::{Operator, OperatorResponse, plain_ridge};

@@ -1,10 +1,10 @@
 //! From the mask's staircase to the operator's edge, at a fraction of a pixel.
 //!
 //! Method: the boundary is smoothed by a pixel or two; from each of its points the operator's
-//! answer is sampled along the normal, the best edge within reach is taken, and its place is found
-//! by a parabola (ridges) or a straight line (zero crossings) through the samples around it.
-//! Offsets that leave the median of their neighbours are dropped. Where nothing is seen the mask's
-//! own half-way crossing stays. Cost: about 1 us a boundary point.
+//! response is sampled along the normal, the best edge within reach is taken, and its place is
+//! found by a parabola (ridges) or a straight line (zero crossings) through the samples around it.
+//! Offsets that leave the median of their neighbours are dropped. Where no edge is found, the point
+//! where the mask crosses one half stays. Cost: about 1 us per boundary point.
 
 use super::operator::{Accept, OperatorResponse};
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 //! Method: the two diagonal differences of 2 x 2 pixels (L. Roberts, *Machine perception of
 //! three-dimensional solids*, 1963); an edge is a ridge of their root sum of squares over a
 //! threshold. The operator is centred between four pixels, which is taken into account. Cost: about
-//! 8 ns a pixel of the band. Limits: the smallest operator, and so the one that noise misleads
+//! 8 ns per pixel of the band. Limits: the smallest operator, and so the one that noise misleads
 //! most.
 
 use super::band::{PicturePatch, TileBand};

@@ -1,7 +1,7 @@
 //! Sobel's edge detector.
 //!
 //! Method: gradient by central differences, smoothed (1, 2, 1) across (I. Sobel and G. Feldman,
-//! 1968); an edge is a ridge of its magnitude over a threshold. Cost: about 15 ns a pixel of the
+//! 1968); an edge is a ridge of its magnitude over a threshold. Cost: about 15 ns per pixel of the
 //! band. Limits: no smoothing along the gradient, so weave and grain answer as well.
 
 use super::band::TileBand;

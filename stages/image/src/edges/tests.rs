@@ -260,8 +260,8 @@ fn failure(photo: &Photo, mask: &Mask) -> (String, String) {
     (e.message, e.hint.unwrap_or_default())
 }
 
-/// A garment whose ground was cut away may fill its frame; of a photo that the garment fills it is
-/// told.
+/// A garment whose ground was cut away may fill its frame; a photo that the garment fills gives a
+/// warning.
 #[test]
 fn a_garment_that_was_cut_out_is_not_cut_by_the_frame() {
     let at = |x: u32, y: u32| Luma([255 * u8::from(x >= 70 && y < 150 || y < 60)]);

@@ -17,7 +17,7 @@ use toile_core::{ErrorCode, StageError};
 pub const MAX_SIDE_PX: u64 = 30_000;
 /// The most pixels of a photo. 200-megapixel phones are the largest sold.
 pub const MAX_PIXELS: u64 = 200_000_000;
-/// The most memory that a decoded photo may take, before it is brought down to 8 bits a channel.
+/// The most memory that a decoded photo may take, before it is reduced to 8 bits a channel.
 pub const MAX_DECODED_BYTES: u64 = 1 << 30;
 
 /// A decoded photo.

@@ -13,7 +13,7 @@ use toile_core::{Length, ParamType};
 pub const MIN_WIDTH_M: f64 = 0.005;
 /// The widest garment, metres: a ball gown laid flat has 3 m.
 pub const MAX_WIDTH_M: f64 = 10.0;
-/// The coarsest scale, pixels per metre: 1 cm a pixel.
+/// The coarsest scale, pixels per metre: 1 cm per pixel.
 pub const MIN_PX_PER_METRE: f64 = 100.0;
 /// The finest scale, pixels per metre: a flat-bed scanner at 2,540 dpi.
 pub const MAX_PX_PER_METRE: f64 = 100_000.0;

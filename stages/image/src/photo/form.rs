@@ -1,7 +1,7 @@
 //! What kind of picture a file is, by its first bytes.
 //!
-//! Kinds that are not read are named all the same: who is told that a photo "is a HEIC picture"
-//! knows what to export.
+//! Kinds that are not read are named all the same: a user who reads that a photo "is a HEIC
+//! picture" knows what to export.
 //!
 //! Source: the signatures of each format's specification; ISO/IEC 23008-12 for the brands of HEIC,
 //! AVIF and CR3.

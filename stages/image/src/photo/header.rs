@@ -15,7 +15,7 @@ use super::form::PictureFormat;
 use super::tiff::Directory;
 use std::borrow::Cow;
 
-/// What a file's structure tells.
+/// Size and completeness of a picture, read from the structure of its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Header {
     /// Pixels across, as stored (before any turning).
@@ -82,7 +82,7 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8], &[u8])> {
     })
 }
 
-/// A WebP is a RIFF file: a first chunk that tells the size, and others. All must lie in the file,
+/// A WebP is a RIFF file: a first chunk that holds the size, and others. All must lie in the file,
 /// which says how long it is.
 fn webp(bytes: &[u8]) -> Option<Header> {
     let le = |at: usize, count: usize| {

@@ -26,7 +26,7 @@ use toile_core::{Node, StageMeta};
 /// An opacity channel that is not full everywhere is kept: binarisers take what is transparent as
 /// ground.
 ///
-/// At most 30,000 px a side, 200 megapixels and 1 GiB decoded.
+/// At most 30,000 px per side, 200 megapixels and 1 GiB decoded.
 #[stage(
     role = Reader,
     source = "ITU-T T.81, 1992; ISO/IEC 15948, 2004; RFC 9649, 2024; TIFF 6.0, 1992",
@@ -56,7 +56,7 @@ impl Photos {
                 PhotoEntry::File(file) => (look(name, &file.file, placed.cx).err(), None),
                 PhotoEntry::MirrorOf(other) => (None, self.photos.get(other)),
             };
-            // The faults of a file that is mirrored are told at that file.
+            // The faults of a file that is mirrored are reported at that file.
             let of_scale =
                 if let Some(PhotoEntry::File(_)) = target { None } else { resolve(&self.photos, name).err() };
             of_scale.into_iter().chain(own)

@@ -31,7 +31,7 @@ fn no_such_photo(entries: &BTreeMap<String, PhotoEntry>, name: &str, target: &st
     let known: Vec<String> = entries.keys().map(|k| format!("\"{k}\"")).collect();
     let others = entries.keys().map(String::as_str).filter(|k| *k != name);
     let near = nearest(target, others).map_or_else(String::new, |n| format!("did you mean \"{n}\"? "));
-    StageError::invalid(format!("photo \"{name}\" is to mirror \"{target}\", which there is not"))
+    StageError::invalid(format!("photo \"{name}\" is to mirror \"{target}\", which does not exist"))
         .hint(format!("{near}the photos are {}", known.join(", ")))
         .at("photos")
         .within(name)

@@ -20,7 +20,8 @@ pub enum ScaleObject {
     A4,
     /// A sheet of US Letter paper: 215.9 x 279.4 mm.
     Letter,
-    /// A ruler with millimetres or centimetres. It tells no tilt: photograph from straight above.
+    /// A ruler with millimetres or centimetres. It does not show a tilt: photograph from straight
+    /// above.
     Ruler,
     /// A chessboard.
     Chessboard {
@@ -67,7 +68,8 @@ impl ScaleObject {
 /// The photo as if taken from straight above, and its pixels a metre.
 ///
 /// # Errors
-/// The object is not found, or not for sure; a photo whose ground was cut away shows none.
+/// The object is not found, or not with certainty; a photo whose ground was cut away cannot show
+/// one.
 pub(super) fn from_above(
     decoded: Decoded,
     object: ScaleObject,

@@ -18,7 +18,7 @@ pub enum Needs {
     Both,
 }
 
-/// What a style of that name needs; none of a stage that is no built-in style of photos.
+/// What a style of that name needs; none for a stage that is no built-in style of photos.
 pub fn needs(stage: &str) -> Option<Needs> {
     match stage {
         "Block" | "Fitting" => Some(Needs::Front),
@@ -45,7 +45,7 @@ pub(super) fn misnamed(names: &[&str], placed: &Placed<'_>) -> Vec<StageError> {
     let cuts = styles.iter().find(|(_, needs)| *needs == Needs::Front);
     if let (Some((style, _)), false) = (cuts, has_front || names.is_empty()) {
         let e = StageError::invalid(format!(
-            "`{}` cuts the garment from \"front\", and no photo is named so",
+            "`{}` cuts the garment from \"front\", and no photo has that name",
             style.id
         ));
         found.push(e.hint("call the photo of the garment's front \"front\"").at("photos"));
@@ -62,7 +62,7 @@ pub(super) fn unused(names: &[&str], placed: &Placed<'_>) -> Vec<StageError> {
         .iter()
         .filter(other)
         .map(|name| {
-            let e = StageError::invalid(format!("`{}` makes nothing of the photo {name:?}", style.id));
+            let e = StageError::invalid(format!("`{}` does not use the photo {name:?}", style.id));
             e.hint("it takes \"front\" and \"back\"").at("photos").within(*name)
         })
         .collect();

@@ -120,7 +120,7 @@ fn wrong_sets_are_refused() {
     let text = |photos: &str| folder.read(photos).unwrap_err();
     assert_eq!(text("{}").to_string(), "there are no photos");
     let error = text(r#"{"back": MirrorOf("fornt"), "front": (file: "a.png")}"#);
-    assert_eq!(error.to_string(), "photo \"back\" is to mirror \"fornt\", which there is not");
+    assert_eq!(error.to_string(), "photo \"back\" is to mirror \"fornt\", which does not exist");
     assert_eq!(error.hint.unwrap(), "did you mean \"front\"? the photos are \"back\", \"front\"");
     let error = text(r#"{"../front": (file: "a.png")}"#);
     assert_eq!(error.to_string(), "a photo is named \"../front\", as no file can be");
@@ -388,7 +388,7 @@ proptest! {
     }
 }
 
-/// White paper of A4 on a dark floor, 1,000 pixels a metre, photographed from straight above.
+/// White paper of A4 on a dark floor, 1,000 pixels per metre, photographed from straight above.
 fn sheet() -> RgbImage {
     RgbImage::from_fn(900, 700, |x, y| {
         Rgb(if (500..797).contains(&x) && (150..360).contains(&y) { [235, 235, 230] } else { [70, 60, 50] })

@@ -7,7 +7,7 @@
 //! tube around a cylinder it is Laplace's `p = T / r`. Source: Woven law of the cloth engine (see
 //! `docs/reference/solver.md`); Laplace 1806.
 //!
-//! Limits: bending is left out; weight is that of the Earth, whatever the solver was told; of
+//! Limits: bending is left out; weight is that on the Earth, whatever gravity the solver had; of
 //! layers that lie on each other each has its own pressure; cloth that is not at rest, or whose
 //! flat shape is not known, has no true figures.
 
@@ -28,11 +28,11 @@ pub(super) type Yarns = [f64; 2];
 /// What the cloth carries.
 #[derive(Debug, Clone)]
 pub(super) struct ClothLoad {
-    /// Strain, one a triangle.
+    /// Strain, one per triangle.
     pub strain: Vec<Yarns>,
-    /// Tension, N per metre of cut width, one a triangle.
+    /// Tension, N per metre of cut width, one per triangle.
     pub tension: Vec<Yarns>,
-    /// Pressure on the body, Pa, one a vertex; none where the cloth is not on it.
+    /// Pressure on the body, Pa, one per vertex; none where the cloth is not on it.
     pub pressure: Vec<Option<f64>>,
     /// Present area around each vertex, square metres; joined vertices have theirs together.
     pub area: Vec<f64>,

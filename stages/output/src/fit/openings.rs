@@ -11,7 +11,7 @@ const BESIDE: f64 = 0.05;
 /// A closed line of edges that nothing is sewn to.
 #[derive(Debug, Clone)]
 pub(super) struct Opening {
-    /// Its vertices in order, one a panel that has part in it.
+    /// Its vertices in order, one per panel that has part in it.
     pub vertices: Vec<u32>,
     /// Where they are.
     pub points: Vec<Point3>,
@@ -124,7 +124,7 @@ pub(super) fn finished(
 }
 
 /// Where the trunk is at an opening's height: under the waist's landmarks, or the opening's own
-/// middle where no body tells.
+/// middle where there is no body.
 fn centre(opening: &Opening, axis: f64, body: Option<&Body>) -> Point2 {
     let z =
         body.and_then(|b| Some((b.landmarks.get("waist_front")?.z + b.landmarks.get("waist_back")?.z) / 2.0));

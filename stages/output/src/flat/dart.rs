@@ -13,8 +13,8 @@ use toile_flatten::flatteners::Placement;
 pub enum Darts {
     /// It strains.
     None,
-    /// Darts are drawn where the strain passes 1.5 per cent, and told with what each saves; none is
-    /// cut.
+    /// Darts are drawn where the strain is above 1.5 per cent, and listed with what each saves;
+    /// none is cut.
     Propose,
     /// Darts are cut until the strain falls below a limit, or none saves enough.
     Auto {
@@ -47,7 +47,7 @@ impl Darts {
     }
 }
 
-/// The darts of each piece as vertices from the boundary to the tip, each told.
+/// The darts of each piece as vertices from the boundary to the tip, each of them reported.
 pub(super) fn dart_paths(
     sheet: &GarmentPieces,
     objective: &Objective,

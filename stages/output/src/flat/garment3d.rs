@@ -65,7 +65,7 @@ const SIZES: (f64, f64) = (0.05, 6.0);
 /// Reads a garment from a Wavefront OBJ file or a binary glTF file (GLB), to be flattened.
 ///
 /// Of a file of this program the cloth is taken; of other files what is closed all around (a body,
-/// buttons) is left out beside open cloth, and told. The mesh is cut into pieces by its texture
+/// buttons) is left out beside open cloth, and reported. The mesh is cut into pieces by its texture
 /// islands, groups, materials, marked edges or parts. Seams are where pieces meet. What is damaged
 /// is mended and counted: vertices at one place are joined, triangles without area or listed twice
 /// are removed, edges of three triangles are cut, triangles that face against their neighbours are
@@ -93,7 +93,7 @@ pub struct Garment3d {
     /// The axis that points up.
     #[param(default = Up::Y)]
     pub up: Up,
-    /// What tells the pieces from each other.
+    /// What separates the pieces.
     #[param(default = PiecesBy::Auto)]
     pub pieces: PiecesBy,
     /// Vertices that are so near to each other are one.
@@ -128,7 +128,7 @@ impl Garment3d {
         let (labels, cut) = labels(&mended, by);
         let pieces = islands_by_labels(&mended.mesh.positions, &mended.mesh.triangles, &labels)
             .map_err(|e| unlaid(e, &mended).at("pieces"))?;
-        cx.note(format!("the pieces are told by {}", by.words()));
+        cx.note(format!("the pieces are separated by {}", by.words()));
         let closed = wholes(&mended.mesh);
         if closed.iter().all(|w| w.is_closed()) {
             let names = list(closed.iter().map(|w| w.name.as_str()));

@@ -151,7 +151,7 @@ impl GarmentPieces {
         garment.velocities = sources.iter().map(|&v| from.velocities[v as usize]).collect();
         let pinned = |v: &u32| from.pinned.binary_search(&sources[*v as usize]).is_ok();
         garment.pinned = (0..sources.len() as u32).filter(pinned).collect();
-        // Friction is told of vertices as they were numbered before.
+        // Friction refers to vertices by their old numbers.
         garment.status = SolveStatus { held: Held::default(), ..from.status.clone() };
         self.name_seams(from, &mut garment);
         garment

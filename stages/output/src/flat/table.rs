@@ -14,9 +14,9 @@ use toile_flatten::distortion::{Distortion, StrainSpread, distortion};
 ///
 /// Of each piece: area and outline on the garment and in the plane, their errors from 3D to 2D and
 /// from 2D to 3D, inner angles of its corners, strain along warp and weft; of each seam the lengths
-/// of its sides. Where the garment was cut from a known pattern, area and outline are held against
-/// that, too, and the greatest distance between both outlines is told. `NAME.json` holds the table,
-/// `NAME_strain.svg` the picture.
+/// of its sides. Where the garment was cut from a known pattern, area and outline are compared with
+/// that, too, and the greatest distance between both outlines is given. `NAME.json` holds the
+/// table, `NAME_strain.svg` the picture.
 #[stage(
     role = Writer,
     source = "Fan, Zhou, Wang, Yuen 1999",

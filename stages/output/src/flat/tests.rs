@@ -98,11 +98,11 @@ fn what_cannot_be_a_garment_is_refused_with_a_remedy() {
     );
     assert_eq!(
         told(square, ", pieces: Groups"),
-        "the file has no second group to tell the pieces by / give each piece a group, or write another word for `pieces`, such as `Auto`"
+        "the file has no second group to separate the pieces by / give each piece a group, or write another word for `pieces`, such as `Auto`"
     );
     assert_eq!(
         told(square, ", pieces: Uv"),
-        "the file has no texture points on all triangles to tell the pieces by / unwrap it, or write another word for `pieces`, such as `Auto`"
+        "the file has no texture points on all triangles to separate the pieces by / unwrap it, or write another word for `pieces`, such as `Auto`"
     );
     let bag = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     assert_eq!(

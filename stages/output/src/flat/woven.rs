@@ -1,4 +1,4 @@
-//! `Woven`: threads keep their lengths, shear gives way.
+//! `Woven`: threads keep their lengths, shear is soft.
 
 use super::flattened::{Care, Request};
 use toile_core::prelude::*;
@@ -8,7 +8,7 @@ use toile_flatten::flatteners::woven;
 use toile_flatten::newton::StoppingLimits;
 
 /// Lays each piece flat as its fabric would: warp and weft keep their lengths by the fabric's own
-/// curves, shear gives way.
+/// curves, shear is soft.
 ///
 /// The stiffness of warp and weft is the force of the fabric's curve at `strain` over that strain,
 /// that of shear the same at `angle`. The grain is held upright.

@@ -107,7 +107,7 @@ pub(super) struct Camera {
 
 /// No nearer than this to the camera, metres: keeps 1 / depth bounded.
 pub(super) const NEAREST: f64 = 0.05;
-/// Half the size of what stands in for an empty or point-like model, metres.
+/// Half the size that an empty or point-like model is given, metres.
 const LEAST_EXTENT: f64 = 1e-3;
 
 impl Camera {

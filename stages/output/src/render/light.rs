@@ -6,7 +6,7 @@
 //! sphere of directions, a soft shadow for a narrow cone. So folds and the inside of a hem darken
 //! without any noise, and the ambient part serves every view.
 //!
-//! Cost: one depth-only drawing of the model a direction, one lookup a vertex and direction.
+//! Cost: one depth-only drawing of the model per direction, one lookup per vertex and direction.
 //! Limits: light varies linearly over a triangle; details below [`MAP_PX`]'s resolution are lost.
 
 use super::camera::Projected;
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use toile_core::Cancel;
 use toile_core::artifact::{Mesh, Model, Point3, Vector3};
 
-/// Side of a depth map, px: a trade of sharp shadows for time. About 3 mm a pixel on a torso.
+/// Side of a depth map, px: a trade of sharp shadows for time. About 3 mm per pixel on a torso.
 const MAP_PX: usize = 384;
 /// How finely light is worked out: a trade of smoothness for time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,8 +42,8 @@ const LIFT: f64 = 0.006;
 const BIAS: f64 = 0.004;
 /// Around the garment's box, metres: what lies beyond casts no shadow on it worth the resolution.
 const REACH: f64 = 0.25;
-/// What stands before the sky gives this share of its light back: the inside of a garment is dim,
-/// not black.
+/// Surfaces that hide the sky return this share of its light: the inside of a garment is dim, not
+/// black.
 const BOUNCE: f64 = 0.3;
 /// The sky's light at the nadir against that at the zenith: floor and walls give light back.
 const NADIR: f64 = 0.45;
@@ -67,8 +67,8 @@ pub(super) fn studio(d: &Vector3) -> f64 {
     NADIR + (1.0 - NADIR) * (d.y + 1.0) / 2.0
 }
 
-/// Ambient light on the front and on the back of every vertex, one list a mesh, where so much comes
-/// from each direction; once it is to stop, what has been gathered.
+/// Ambient light on the front and on the back of every vertex, one list per mesh, where so much
+/// comes from each direction; once it is to stop, what has been gathered.
 pub(super) fn ambient(
     model: &Model,
     region: ShadowRegion,

@@ -220,8 +220,8 @@ impl MipLevel {
     }
 }
 
-/// The whole number below, and the rest. (`floor` is a call into the mathematics library on
-/// processors that a plain build serves.)
+/// The whole number below, and the remainder. (In a build for any processor, `floor` would be a
+/// call into the mathematics library.)
 fn split(v: f32) -> (i64, f32) {
     let towards_zero = v as i64;
     let whole = if (towards_zero as f32) > v { towards_zero - 1 } else { towards_zero };

@@ -1,6 +1,6 @@
 //! Pictures of models without a window or a graphics card.
 //!
-//! A z-buffer rasteriser with four samples a pixel, mip-mapped textures and a soft studio light
+//! A z-buffer rasteriser with four samples per pixel, mip-mapped textures and a soft studio light
 //! whose shadows come from depth maps. [`render`] makes one picture; a [`ModelScene`] prepared once
 //! makes several of the same model, which saves the part of the light that no view changes.
 //!

@@ -10,8 +10,8 @@ const MANNEQUIN: [f32; 3] = [0.42, 0.41, 0.40];
 pub(crate) const UNDYED: [f32; 3] = [0.66, 0.60, 0.49];
 /// Cloth is matt.
 const CLOTH_ROUGHNESS: f32 = 0.95;
-/// The sheen of cloth where a texturer is not told: its share of white, and its roughness, that of
-/// short fibres on every side.
+/// The sheen of cloth for which the texturer has none: its share of white, and its roughness, that
+/// of short fibres in all directions.
 pub(crate) const SHEEN: f64 = 0.1;
 const SHEEN_ROUGHNESS: f32 = 0.5;
 

@@ -100,14 +100,14 @@ fn png(picture: &GrayImage) -> Option<PictureForm> {
     picture.write_to(&mut bytes, ImageFormat::Png).ok().map(|()| PictureForm::Png(bytes.into_inner()))
 }
 
-/// The size of a picture brought down to `height`.
+/// The size of a picture reduced to `height`.
 fn reduced((w, h): (u32, u32), height: u32) -> (u32, u32) {
     let scale = (f64::from(height) / f64::from(h.max(1))).min(1.0);
     let fit = |v: u32| (f64::from(v) * scale).round().max(1.0) as u32;
     (fit(w), fit(h))
 }
 
-/// A picture brought down to `height`; never up.
+/// A picture reduced to `height`, never enlarged.
 pub(crate) fn thumbnail(picture: &RgbImage, height: u32) -> RgbImage {
     if picture.height() <= height {
         return picture.clone();

@@ -1,7 +1,7 @@
 //! Light from a panorama: a picture of everything around, as wide as 360 and as high as 180
 //! degrees.
 //!
-//! The picture is brought down to [`WIDTH`] by half as many cells; every cell is a light at that
+//! The picture is reduced to [`WIDTH`] by half as many cells; every cell is a light at that
 //! direction (image-based lighting: Debevec, 1998). Soft light from all of them falls on every
 //! place that they reach; the brightest region is the key light as well, whose shadows have an
 //! edge. The middle of the picture is seen behind the wearer, from the front. Limit: the picture's

@@ -16,8 +16,8 @@ pub(super) struct Crop {
     pub(super) inside: GrayImage,
 }
 
-/// The size of the crop: the box, or what is left of it when its longer side is brought down to
-/// `size` px.
+/// The size of the crop: the box, or what is left of it when its longer side is reduced to `size`
+/// px.
 pub(super) fn scaled_size(area: PixelBox, size: u32) -> [u32; 2] {
     let longer = area.width.max(area.height);
     let fit = |side: u32| match longer > size {

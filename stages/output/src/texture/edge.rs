@@ -48,7 +48,7 @@ pub(super) struct OpenEdges {
     beyond: BTreeMap<u32, Vector3>,
     /// By panel: its edges, welded or not, in the order of its triangles.
     edges: Vec<Vec<[u32; 2]>>,
-    /// Upright on the cloth, one a vertex.
+    /// Upright on the cloth, one per vertex.
     normals: Vec<Vector3>,
 }
 

@@ -4,9 +4,9 @@
 //! A panel with such edges has a picture of its own: its cloth, and near an edge what the distance
 //! to it and the place along it say. A rib has columns of stitches upright on the edge and a seam
 //! where it meets the cloth; a hem has a row of lock stitches in a shallow groove (ISO 4915, stitch
-//! type 301). Nothing of it is in the mesh. Cost: one look a texel, and one a texel and mesh edge
-//! near the edge. Limits: texels of 0.4 mm at least, so single yarns are not told apart; where two
-//! finished edges meet, each texel belongs to the nearer one.
+//! type 301). Nothing of it is in the mesh. Cost: one lookup per texel, and one per texel and mesh
+//! edge near the edge. Limits: texels of 0.4 mm at least, so single yarns are not told apart; where
+//! two finished edges meet, each texel belongs to the nearer one.
 
 use super::relief::Relief;
 use super::weave::{Colour, Swatch};

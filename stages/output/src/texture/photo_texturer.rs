@@ -64,7 +64,7 @@ pub enum Unseen {
     /// That mirror image.
     Mirrored,
     /// The cloth alone, in its light and weave: without print, label, fly, zip, pocket or seam.
-    /// Where a pattern is all over the garment, the mirror image stays, which is told.
+    /// Where a pattern is all over the garment, the mirror image stays, with a note.
     Plain,
 }
 

@@ -26,9 +26,10 @@ const BAND: f64 = 0.12;
 const BIN: f64 = 4.0;
 /// Cloth lies within this distance of its colour in hue.
 const HUE: f64 = 12.0;
-/// And of its lightness: that of the whole cloth, and that of the cloth around.
+/// Cloth lies within these distances of a lightness: that of the whole cloth, and that of the cloth
+/// around.
 const LIGHT: [f64; 2] = [30.0, 10.0];
-/// Beyond this share of the band, or of all, what differs is a pattern of the cloth.
+/// If more than this share of the band, or of the whole, differs, it is a pattern of the cloth.
 const PATTERN: [f64; 2] = [0.2, 0.6];
 /// Squares along the longer side in which marks are looked for, and the share of them with marks
 /// from which these are a pattern.

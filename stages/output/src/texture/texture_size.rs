@@ -1,4 +1,4 @@
-//! Rule `texture-size`: textures of no more pixels than are asked for.
+//! Rule `texture-size`: textures of no more pixels than are requested.
 //!
 //! Fact: the photos' longer side has more pixels than `size`, by more than what the room around the
 //! garment may account for. Then the panel's part of its photo is scaled down, and everything
@@ -40,7 +40,7 @@ pub(super) fn rule(known: &Known<'_>, size: u32) -> Option<Decision> {
 /// Texels of a photo's pixel: the garment's box; and of a texture's square.
 const SHARES: [f64; 2] = [0.8, 0.85];
 
-/// The sizes behind the stage: textures have what the photos hold, and no more than is asked for.
+/// The sizes behind the stage: textures have what the photos hold, and no more than is requested.
 pub(super) fn foreseen(given: &Size, size: u32) -> Option<Size> {
     let (pixels, pieces) = (given.get(Quantity::Pixels)?, given.get(Quantity::Pieces)?);
     let most = SHARES[1] * f64::from(size) * f64::from(size) * pieces;

@@ -10,7 +10,7 @@ use toile_core::prelude::*;
 use toile_image::binarise::Auto;
 use toile_image::photo::decode;
 
-/// The look of the photos of the pipeline, beside variants.
+/// Name of the look in the pipeline's own photos, beside the variants.
 pub(super) const ORIGINAL: &str = "original";
 /// So many of a panel's triangles lie on the variant's garment at least; the rest may be lost at
 /// the outline.

@@ -22,7 +22,7 @@ fn check_variant(variant: &Variant, model: &Model) -> Result<(), StageError> {
     worn.try_for_each(|(mesh, material)| check_look(mesh, *material, model)).map_err(fault)
 }
 
-/// Whether a mesh can wear a material; what is wrong in words.
+/// Checks that a mesh can have a material; the error is the message.
 fn check_look(mesh: &Mesh, material: usize, model: &Model) -> Result<(), &'static str> {
     let material = model.materials.get(material).ok_or("has no material")?;
     let pictures = || [material.texture, material.normal_texture].into_iter().flatten();

@@ -1,7 +1,7 @@
 //! `Ply`: the model as one binary PLY mesh with a colour at every vertex (Turk, 1994).
 //!
-//! Colours are read off the textures at the vertices, so the print is as fine as the mesh.
-//! Cost: one texture lookup a vertex. Limit: 2^31 vertices or triangles.
+//! Colours are read off the textures at the vertices, so the print is as fine as the mesh. Cost:
+//! one texture lookup per vertex. Limit: 2^31 vertices or triangles.
 
 use super::check::check_model;
 use super::shown::sheets;

@@ -8,7 +8,7 @@ use toile_drape::engine::{SceneSetting, scene_of};
 
 /// Writes the garment, its seams, fabric and body as a prepared scene, `garment-scene-1`.
 ///
-/// `Scene` reads it again, and programs that know the form can be held against our solvers on a
+/// `Scene` reads it again, and programs that know the form can be compared with our solvers on a
 /// garment of ours. Take the garment before it is sewn: `SceneJson(from: "Arrange")`. The body's
 /// mesh is written beside it as OBJ. The form is described in docs/reference/scene.md.
 #[stage(

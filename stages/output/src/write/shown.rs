@@ -7,7 +7,7 @@ use toile_core::artifact::{Material, Mesh, Model};
 
 /// The model without what a file must not hold: meshes without triangles, materials and textures
 /// that no mesh uses, texture coordinates that no material reads, sheen and normal maps of
-/// materials on which light does not act; and without the body unless it is asked for.
+/// materials on which light does not act; and without the body unless it is requested.
 ///
 /// Errors: nothing is left.
 pub(super) fn shown(model: &Model, body: bool) -> Result<Model, StageError> {

@@ -1,8 +1,8 @@
 //! Angles of triangles, and a quick look whether any is too small.
 //!
 //! Method: an angle t is below a bound b where sin(t - b) is negative, which takes products only.
-//! What they decide beyond any doubt of rounding is never asked again; the rest is told by angles,
-//! so that the answer is that of angles alone.
+//! Where their sign is certain in spite of rounding, it decides; elsewhere the angles are computed,
+//! so that the result is always that of the angles.
 
 use toile_core::artifact::Point2;
 

@@ -94,7 +94,7 @@ fn thin_stretches(division: &Division, meshed: &Meshed) -> Vec<usize> {
     thin
 }
 
-/// Puts a panel together and tells its figures.
+/// Puts a panel together and reports its figures.
 fn assemble(
     outline: &Outline,
     division: &Division,

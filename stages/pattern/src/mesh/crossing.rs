@@ -47,7 +47,7 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// About one cell a segment, and no fewer than one.
+    /// About one cell per segment, and no fewer than one.
     fn new(points: &[Point2], segments: &[[u32; 2]]) -> Self {
         let (mut low, mut high) =
             (Point2::new(f64::INFINITY, f64::INFINITY), Point2::new(f64::NEG_INFINITY, f64::NEG_INFINITY));

@@ -1,12 +1,10 @@
 //! Near-equilateral triangles by constrained Delaunay triangulation with refinement.
 //!
 //! Method: the outline is divided first and never touched again; a lattice of equilateral triangles
-//! fills the inside; the constrained Delaunay
-//! triangulation of both (Chew 1989) is relaxed near the outline and its angles are mended by
-//! refinement after Ruppert (1995), without splitting segments (see `refine`).
-//! Cost: n log n.
-//! Limits: where segments of very different length meet at a sharp corner, the angle asked for
-//! cannot be had; the figure `least_angle` tells.
+//! fills the inside; the constrained Delaunay triangulation of both (Chew 1989) is relaxed near the
+//! outline and its angles are mended by refinement after Ruppert (1995), without splitting segments
+//! (see `refine`). Cost: n log n. Limits: where segments of very different length meet at a sharp
+//! corner, the angle asked for cannot be had; the figure `least_angle` shows it.
 
 use super::assemble::{Meshed, mesh_outline};
 use super::divide::Division;

@@ -5,10 +5,9 @@
 //! name (an outline that no style has named, a hole) runs from corner to corner, or all the way
 //! round, and is cut ever finer until its chords stay within half of [`CHORD_TOLERANCE`]. Corners
 //! inside a stretch and the feet of inner lines are kept as vertices: the division nearest to each
-//! slides onto it, so that the count stays.
-//! Cost: linear in the points of the outline, times the number of inner lines' ends.
-//! Limits: the count of a named edge is never changed, so an outline rougher than its gauge says
-//! leaves the tolerance; [`Division::deviation`] tells by how much.
+//! slides onto it, so that the count stays. Cost: linear in the points of the outline, times the
+//! number of inner lines' ends. Limits: the count of a named edge is never changed, so an outline
+//! rougher than its gauge says leaves the tolerance; [`Division::deviation`] says by how much.
 
 use super::check::show;
 use super::crossing::first_crossing;
@@ -121,7 +120,7 @@ fn parts(s: &Stretch<'_>, h: f64) -> Result<usize, StageError> {
     Ok(n)
 }
 
-/// Divides an outline as the cuts say; `h` is the edge length that a fault is told with, metres.
+/// Divides an outline as the cuts say; `h` is the edge length that a fault names, metres.
 pub(crate) fn divide(layout: &Layout<'_>, cuts: &Cuts, h: f64) -> Result<Division, StageError> {
     let mut division = Division { deviates: "the outline".into(), ..Division::default() };
     let mut shares = cuts.stretches.iter();

@@ -32,7 +32,7 @@ pub(crate) struct Stretch<'a> {
 }
 
 impl Stretch<'_> {
-    /// The fewest parts that keep its marks, and a closed one a loop.
+    /// The least number of parts that keeps its marks and, if it is closed, a loop.
     pub(crate) fn least(&self) -> usize {
         if self.closed { LEAST_CLOSED } else { 1 }.max(self.marks.len() + 1)
     }

@@ -1,7 +1,8 @@
 //! Meshers: outline to panel.
 //!
-//! All share all but the inside: [`check`](self) of the outline, its division into segments that
-//! no mesher may change, constrained triangulation, mending of angles, assembly.
+//! They share everything but the filling of the inside: [`check`](self) of the outline, its
+//! division into segments that no mesher may change, constrained triangulation, mending of angles,
+//! assembly.
 
 mod angles;
 mod assemble;

@@ -123,7 +123,7 @@ fn best_place(mesh: &TriMesh, star: &[u32], v: u32, before: f64) -> (Point2, f64
     (best, angle)
 }
 
-/// Inserts a vertex that betters the cavity around it; true where there is one.
+/// Inserts a vertex that improves the angles around it; true where there is such a vertex.
 fn add(mesh: &mut TriMesh, t: u32) -> bool {
     let mut best: Option<(f64, u32, Point2)> = None;
     for p in candidates(mesh.corners(t)) {

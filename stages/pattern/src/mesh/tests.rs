@@ -142,7 +142,7 @@ fn named_edges_are_cut_into_equal_parts_as_their_gauge_says() {
 
 #[test]
 fn the_grid_runs_along_warp_and_weft() {
-    // A square of 25 cells a side: nothing but the grid.
+    // A square of 25 cells per side: nothing but the grid.
     let panel = grid(&rectangle(0.3, 0.3), 0.012).unwrap();
     assert_eq!(panel.positions.len(), 26 * 26);
     assert_eq!(panel.triangles.len(), 2 * 25 * 25);

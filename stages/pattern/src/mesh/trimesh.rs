@@ -199,7 +199,7 @@ impl TriMesh {
             }
             k += 1;
         }
-        // A side noted before the triangle behind it joined the cavity is no longer one.
+        // Drops sides whose triangle on the far side joined the cavity after they were listed.
         sides.retain(|s| s.2 == NONE || s.3 || !inside.contains(&s.2));
         (inside, sides)
     }

@@ -6,7 +6,7 @@ use toile_core::prelude::*;
 
 /// Gaps of up to this are no gaps, metres.
 pub(super) const JOINT: f64 = 2e-4;
-/// Gaps of up to this are closed and told, metres.
+/// Gaps of up to this are closed, with a warning, metres.
 pub(super) const HAIR: f64 = 5e-3;
 
 /// Where a chain of lines is open, and how far, metres.

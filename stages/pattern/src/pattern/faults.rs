@@ -2,7 +2,7 @@
 
 use toile_core::{ErrorCode, StageError};
 
-/// Faults that are told; of more the number.
+/// Greatest number of faults that are reported one by one; of the others only the number is.
 const MOST: usize = 12;
 
 /// What is wrong in one place, and what may be done.

@@ -45,7 +45,7 @@ fn stem(file: &str) -> String {
     stem.strip_suffix("_specification").unwrap_or(&stem).to_owned()
 }
 
-/// Tells what a reader has found.
+/// Reports the remarks of a reader.
 fn tell(told: Remarks, cx: &Context) {
     told.notes.into_iter().for_each(|what| cx.note(what));
     told.warnings.into_iter().for_each(|what| cx.warn(what));

@@ -19,9 +19,9 @@ use toile_core::prelude::*;
 const SHORTEST: f64 = 0.012;
 /// Lengths agree to this, metres, or this share.
 const NEAR: (f64, f64) = (1e-3, 0.002);
-/// An end of a piece runs across the grain to this, as the sine of its angle.
+/// An edge is an end of a piece if the sine of its angle to the cross grain is at most this.
 const ACROSS: f64 = 0.45;
-/// And lies within this share of the piece's length from its lowest or highest point.
+/// An end also lies within this share of the piece's length from its lowest or highest point.
 const END: f64 = 0.12;
 /// A piece this many times longer than wide is a band.
 const BAND: f64 = 4.0;
@@ -32,9 +32,9 @@ const NOTCH: f64 = 35.0;
 const HOLLOW: f64 = 0.1;
 /// An edge that bulges by more than this share is no seam in the middle: the cap of a sleeve.
 const BULGE: f64 = 0.2;
-/// Nor one that runs across the grain, as the sine of its angle to it.
+/// An edge whose angle to the grain has a greater sine than this is no seam in the middle either.
 const LEVEL: f64 = 0.5;
-/// What speaks for an edge of a band that goes on where a seam of the band ends.
+/// Confidence added for an edge of a band that continues where a seam of the band ends.
 const GOES_ON: f64 = 0.02;
 /// Edges and chains of a garment that are compared; with more nothing is proposed.
 const MOST: usize = 2_000;
@@ -72,7 +72,7 @@ struct Candidate {
     notches: Vec<f64>,
 }
 
-/// Seams, the surest first, each with its confidence and what speaks for it.
+/// Seams, the surest first, each with its confidence and the reasons for it.
 pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
     let mut all: Vec<Candidate> = Vec::new();
     for (i, p) in pieces.iter().enumerate() {

@@ -46,7 +46,7 @@ pub(super) fn sewn(
     Ok((pattern, Set(outlines), lowered.plan, proposals))
 }
 
-/// The file of proposed seams; what it is for is told.
+/// The file of proposed seams, with a warning that says how to use it.
 fn proposed(pattern: &Pattern, told: &mut Remarks) -> OutputFiles {
     let seams = propose::propose(&pattern.pieces);
     told.warnings.push(match seams.len() {

@@ -2,18 +2,18 @@
 //!
 //! A [`Side`] keeps every curve as it was drawn. [`Side::curve`] makes one edge of it: itself where
 //! it is one curve, else points that are near enough for its length to be right to [`NEAR`]. Cost:
-//! microseconds a curve. Limits: sides are split by the angle at which curves meet, not within a
+//! microseconds per curve. Limits: sides are split by the angle at which curves meet, not within a
 //! curve.
 
 use toile_core::prelude::*;
 
 /// Outlines are split where they turn by more than this, degrees.
 pub(super) const CORNER: f64 = 25.0;
-/// Joined curves are drawn by chords that are shorter than they by no more than this share.
+/// Joined curves become chords, whose length is less than that of the curves by at most this share.
 const NEAR: f64 = 5e-7;
 /// Chords are halved no further than this, metres.
 const SHORTEST: f64 = 1e-4;
-/// And no more often than this.
+/// Chords are halved no more often than this.
 const HALVINGS: u32 = 12;
 
 /// A stretch of an outline with its name; lengths in metres.

@@ -80,8 +80,8 @@ impl WrittenSeamKind {
 
 /// The seams of a file's bytes, along edges that the pieces have.
 ///
-/// Errors: text that is no such RON, with line and column; every edge that there is none of, with
-/// the number of its seam.
+/// Errors: text that is no such RON, with line and column; every edge that does not exist, with the
+/// number of its seam.
 pub(super) fn read(bytes: &[u8], pieces: &[Piece]) -> Result<Vec<PatternSeam>, Vec<PatternFault>> {
     let fault = |what: String, remedy: Option<String>| PatternFault {
         code: ErrorCode::PatternLoading,
@@ -149,7 +149,7 @@ fn list<'n>(names: impl Iterator<Item = &'n String>) -> String {
     all[..all.len().min(MOST_NAMES)].join(", ") + &more
 }
 
-/// Seams as such a file, each with what speaks for it as a comment.
+/// Seams as such a file, each with the reasons for it as a comment.
 pub(super) fn write(seams: &[(PatternSeam, String)]) -> String {
     let mut out = String::from(
         "// Proposed seams. Look at each, take out what is wrong, and give this file as `seams`; nothing is sewn until then.\n\

@@ -40,7 +40,7 @@ pub(super) fn distinct<T>(folds: impl IntoIterator<Item = (Fold, T)>) -> Vec<(Fo
     out
 }
 
-/// What is told of a ring that lies open along two edges.
+/// The remark on a ring that lies open along two edges.
 pub(super) fn open_ring(piece: &str, [a, b]: &[String; 2]) -> String {
     format!(
         "piece \"{piece}\" is a ring when both its folds are unfolded: it is cut open along one, to be closed by a seam of \"{a}\" and \"{b}\""
@@ -144,7 +144,7 @@ impl Fold {
         (out.len() >= 2).then_some(Unfolded { sides: out, open })
     }
 
-    /// Moves sides that lie on the line a hair's breadth away from it, to where the others lie.
+    /// Moves sides that lie on the line slightly away from it, to the side of the others.
     fn gape(&self, sides: &mut [Side], slits: &[usize]) {
         let n = sides.len();
         let across = Vector2::new(-self.way.y, self.way.x);

@@ -22,10 +22,10 @@ pub enum DrawingUnit {
     Px,
 }
 
-/// The longest side of a garment's largest piece, metres; a file that says its unit is believed
-/// within these.
+/// The longest side of a garment's largest piece, metres; a unit that the file states is used if
+/// this size is within these.
 const WORN: (f64, f64) = (0.15, 5.0);
-/// And within these where nothing says it.
+/// The same size, metres, where nothing states the unit.
 const LIKELY: (f64, f64) = (0.25, 2.5);
 /// What that side is most often, metres.
 const USUAL: f64 = 0.7;
@@ -100,7 +100,7 @@ pub(super) struct Taken {
 /// Who says a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum By {
-    /// A person, who is believed.
+    /// A person, whose unit is always used.
     Parameter,
     /// The file, by the name of a unit of length.
     File,
@@ -108,7 +108,7 @@ pub(super) enum By {
     Guess,
 }
 
-/// Why no one wears the pieces that were read with a unit, and what may be done.
+/// The error for pieces that have no garment's size in the unit that was used.
 #[derive(Debug, PartialEq)]
 pub(super) struct Misfit {
     pub what: String,

@@ -17,11 +17,11 @@ const ANGLE_FLOOR: f64 = 20.0;
 /// of the outline's tolerance; this is less than the other half.
 const OUTLINE_REACH: f64 = 0.4 * CHORD_TOLERANCE;
 
-/// The length of every stretch of the outline survives to this share, half of what is promised
-/// of named edges.
+/// The length of every stretch of the outline changes by at most this share, half of what is
+/// promised for named edges.
 const LENGTH_TOLERANCE: f64 = 5e-4;
 
-/// Where smoothed vertices want to go in one step.
+/// Positions of smoothed vertices after one step, before they are checked.
 pub(crate) trait Step {
     /// The displacement of an inner vertex.
     fn inner(&self, topology: &Topology, points: &[Point2], v: usize) -> Vector2;
@@ -112,7 +112,7 @@ fn scaled_to_length(panel: &Panel, stretch: &Stretch, places: Vec<(usize, Point2
     places.iter().map(|&(k, p)| (k, home(k) + (p - home(k)) * share)).collect()
 }
 
-/// The wanted places, but the old ones round triangles that would suffer.
+/// The smoothed positions, but the old ones around triangles that would become worse.
 fn step_back(triangles: &[[u32; 3]], old: &[Point2], mut wanted: Vec<Point2>) -> Vec<Point2> {
     let floor = ANGLE_FLOOR.to_radians();
     let before: Vec<f64> = triangles.iter().map(|t| angle(old, t).min(floor)).collect();

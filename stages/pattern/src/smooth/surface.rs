@@ -2,9 +2,8 @@
 //!
 //! Method: see `plane`. Inner vertices take the mean plane of their neighbours; border vertices the
 //! mean line of the two before and the two behind, and move along the border's normal in the
-//! surface.
-//! Cost: linear in the triangles, a round; one 3 by 3 eigenproblem a vertex.
-//! Limits: corners of the border (above 30 degrees) and vertices within two places of one stay.
+//! surface. Cost: linear in the triangles, a round; one 3 by 3 eigenproblem per vertex. Limits:
+//! corners of the border (above 30 degrees) and vertices within two places of one stay.
 
 use super::topology::Neighbours;
 use nalgebra::Matrix3;

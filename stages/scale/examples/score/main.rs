@@ -1,10 +1,10 @@
 //! Scores the finder on drawn scenes: `score COUNT [KIND [FIRST [PICTURES]]]`.
 //!
 //! Scenes FIRST to FIRST + COUNT - 1 of each kind are drawn, with the object and without it among
-//! things that are like it, or of one KIND (`card`, `a4`, `letter`, `chess`, `ruler mm`,
-//! `ruler cm`, or `no card` and so on). A line a kind tells how many were found, in wrong places or
-//! where there is none, and by how much lengths all over the frame were off; a line a scene tells
-//! what was not right. With a folder PICTURES, photos of those scenes are written there.
+//! things that are like it, or of one KIND (`card`, `a4`, `letter`, `chess`, `ruler mm`, `ruler
+//! cm`, or `no card` and so on). One line per kind says how many were found, in wrong places or
+//! where there is none, and by how much lengths all over the frame were off; one line per scene
+//! says what was not right. With a folder PICTURES, photos of those scenes are written there.
 #![allow(clippy::print_stdout, missing_docs, unreachable_pub)]
 
 mod objects;

@@ -4,7 +4,7 @@
 //! negative, is kept if the grey levels on a ring around it change sides four times, and opposite
 //! ones are alike (after Bennett and Lasenby, ChESS, CVIU 118, 2014).
 //!
-//! Cost: about 50 ns a pixel.
+//! Cost: about 50 ns per pixel.
 
 use crate::pixels::ReducedPhoto;
 use nalgebra::{Point2, Vector2};

@@ -3,8 +3,8 @@
 //! Straight segments of the reduced photo are taken for edges. Grey levels along lines beside an
 //! edge are tested for a period by autocorrelation (`period`). Marks are told from weaves and
 //! stripes by their shape: the period is there beside the edge, not beyond it, and deeper inside it
-//! gives way to five or ten times as much (millimetres) or to nothing (centimetres). The spacing is
-//! then followed along the edge by its phase, and a parabola through the phases gives it and its
+//! is replaced by one five or ten times as long (millimetres) or by none (centimetres). The spacing
+//! is then followed along the edge by its phase, and a parabola through the phases gives it and its
 //! change.
 //!
 //! Limits: the scale holds along the ruler; a tilt across it is not seen. Marks need 4 pixels each.
@@ -69,10 +69,11 @@ pub(crate) fn find(photo: &RgbImage, object: KnownObject) -> Result<Found, Scale
     Ok(found)
 }
 
-/// The least distance of marks that are told for sure, pixels.
+/// The least distance of marks that are recognised with certainty, pixels.
 const LEAST_APART: f64 = 4.0;
 
-/// Marks along an edge that are too fine to be told: their period is there, and gone on both sides.
+/// Marks along an edge that are too fine to be recognised: their period shows at the edge, and not
+/// on either side of it.
 fn fine(photo: &RgbImage, edge: &Segment) -> Option<ScaleError> {
     let strip = Strip::of(edge)?;
     let (depth, p) = starts(photo, &strip).into_iter().find(|(_, p)| p.lag < LEAST_APART)?;
@@ -252,8 +253,8 @@ fn starts(photo: &RgbImage, strip: &Strip) -> Vec<(f64, Period)> {
     kept
 }
 
-/// Metres between marks, by the periods deeper inside: ten or five times as much tells millimetres,
-/// none tells centimetres; others are refused, as half centimetres and parts of an inch look alike.
+/// Metres between marks, by the periods deeper inside: ten or five times as much means millimetres,
+/// none means centimetres; others are refused, as half centimetres and parts of an inch look alike.
 fn unit(deep: &[Vec<f64>], lag: f64) -> Option<f64> {
     let best = |times: f64| deep.iter().map(|r| period::peak_at(r, lag * times)).fold(0.0, f64::max);
     let [two, four, five, eight, ten] = [2.0, 4.0, 5.0, 8.0, 10.0].map(best);

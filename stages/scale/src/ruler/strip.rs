@@ -25,7 +25,7 @@ impl Strip {
         Some(Strip { start: edge.a, along, across, length: edge.length() as usize })
     }
 
-    /// A place of the photo.
+    /// The photo's point at `x` pixels along the strip and `depth` pixels across it.
     pub(crate) fn place(&self, x: f64, depth: f64) -> Point2<f64> {
         self.start + self.along * x + self.across * depth
     }

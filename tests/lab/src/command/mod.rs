@@ -87,7 +87,7 @@ fn listen() {
     });
 }
 
-/// Whether an end was asked for.
+/// Whether an end was requested.
 fn is_stopped() -> bool {
     STOP.load(Ordering::SeqCst)
 }

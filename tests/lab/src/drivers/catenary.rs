@@ -1,4 +1,4 @@
-//! A strip between two level edges, let go near its state of rest and damped about critically:
+//! A strip between two level edges, released near its state of rest and damped about critically:
 //! length 1, gravity 1, density 1.
 
 use super::way::Way;

@@ -27,9 +27,9 @@ use serde::{Serialize, Serializer};
 use std::ops::ControlFlow;
 use toile_cloth::error::ClothError;
 
-/// Edges along the strip where particles are turned.
+/// Edges along the strip where the number of particles is varied.
 const ALONG: [usize; 6] = [4, 10, 14, 20, 30, 44];
-/// Edges along the strip where steps are turned.
+/// Edges along the strip where the time step is varied.
 const FIXED_ALONG: usize = 14;
 /// The longest time step, s; each following one is half as long.
 const LONGEST_STEP: f64 = 0.128;
@@ -124,7 +124,7 @@ struct Run {
     dt: Option<f64>,
 }
 
-/// Runs all of it; `progress` hears of each run before it begins and may stop there.
+/// Runs everything; `progress` is called before each run and may stop there.
 #[must_use]
 pub fn drivers(options: &Options, progress: &mut Progress<'_>) -> Report {
     let runs = runs(&options.ways);

@@ -190,7 +190,7 @@ impl Ran {
         Self::without_state(Outcome::Refused { error_name, error_text }, steps)
     }
 
-    /// A blow-up is told by an error as well, but nobody has refused anything.
+    /// A blow-up gives an error as well, but is no refusal.
     fn ended_by(error: &ClothError, steps: usize) -> Self {
         match error {
             ClothError::Diverged { .. } => Self::without_state(Outcome::Drifts, steps),

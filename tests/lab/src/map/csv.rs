@@ -1,4 +1,4 @@
-//! A map as text with commas: a line a cell.
+//! A map as text with commas: one line per cell.
 
 use super::Map;
 use super::cell::{Cell, Outcome};

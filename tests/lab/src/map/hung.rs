@@ -20,7 +20,7 @@ const DENSITY: f64 = 0.15;
 const BENDING: f64 = 1e-6;
 /// m/s².
 const GRAVITY: f64 = 9.81;
-/// Angle from the plumb line at which the sheet is let go, rad.
+/// Angle from the vertical at which the sheet is released, rad.
 const OUT: f64 = 0.5;
 /// The start leaves its plane by this share of an edge, so that nothing is straight by chance.
 const NUDGE: f64 = 1e-3;

@@ -1,12 +1,12 @@
-//! Where each solver holds: its time step against the cloth's stiffness and the mesh's edge length,
-//! on a hung sheet let go.
+//! Where each solver is stable: time step against the cloth's stiffness and the mesh's edge length,
+//! for a hung sheet that is released.
 //!
-//! A sheet of [`SIDE`] hangs by its upper edge, is held out at an angle and let go; drag damps its
-//! slowest swing about critically, and [`DECAY`] times that swing's time later it must be at rest
-//! where [`Static`](toile_cloth::solver::Static) finds the equilibrium of the same mesh and models
-//! ([`Cell`] says what came of it). Explicit steps have a limit, `2 / omega_max` of the assembled
-//! stiffness and masses (Courant, Friedrichs, Lewy, 1928); it stands beside every cell, for the
-//! other solvers to be compared with.
+//! A sheet of [`SIDE`] hangs by its upper edge, is held out at an angle and released; drag damps
+//! its slowest swing about critically, and [`DECAY`] times that swing's time later it must be at
+//! rest where [`Static`](toile_cloth::solver::Static) finds the equilibrium of the same mesh and
+//! models ([`Cell`] says what came of it). Explicit steps have a limit, `2 / omega_max` of the
+//! assembled stiffness and masses (Courant, Friedrichs, Lewy, 1928); it stands beside every cell,
+//! for the other solvers to be compared with.
 //!
 //! A cell's cost is bounded before it runs, by its steps, its triangles and what a step of the
 //! solver costs about ([`Scheme::price`]), and again by a clock while it runs. The grids are even

@@ -23,9 +23,9 @@ pub enum Scheme {
     Implicit,
     /// Implicit Euler with conjugate gradients.
     Gradients,
-    /// XPBD, one small step a time step.
+    /// XPBD, one substep per time step.
     Xpbd,
-    /// Projective dynamics, 10 turns a time step.
+    /// Projective dynamics, 10 iterations per time step.
     Projective,
     /// Straight to rest: no time step.
     Rest,

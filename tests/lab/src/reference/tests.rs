@@ -116,7 +116,7 @@ fn a_swing_without_stretch_is_bessels() {
         assert!((stiff.at(s) - wanted).abs() < 1e-5, "{s}: {} against {wanted}", stiff.at(s));
     }
     // Soft cloth hangs lower and swings slower, at first by what Rayleigh's quotient of the stiff
-    // shape tells.
+    // shape predicts.
     let mode = |s: f64| j0(bessel_zero(1) * s.sqrt());
     let rise = |s: f64| (mode(s + 1e-4) - mode(s - 1e-4)) / 2e-4;
     let loss = integral(1e-3, 1.0, 100, |s| s * s * rise(s).powi(2))

@@ -159,7 +159,7 @@ fn stepping(across: usize) -> Result<(f64, Option<f64>), ClothError> {
     Ok((best, memory))
 }
 
-/// Bytes of this process in memory, where the system tells.
+/// Bytes of this process in memory, where the system reports it.
 fn resident() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|l| l.starts_with("VmRSS:"))?;

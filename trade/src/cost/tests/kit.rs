@@ -42,7 +42,7 @@ pub(super) fn record(pipeline: &str, stage: &str, role: &str, size: Size, wall_s
     }
 }
 
-/// Some milliseconds, and 30 ns a pixel.
+/// Some milliseconds, and 30 ns per pixel.
 pub(super) fn otsu(pixels: f64) -> f64 {
     2e-3 + 30e-9 * pixels
 }

@@ -1,4 +1,4 @@
-//! Laws found in runs, and what is told of other pipelines, machines and stages.
+//! Laws found in runs, and what they predict for other pipelines, machines and stages.
 
 use super::kit::*;
 use crate::cost::*;

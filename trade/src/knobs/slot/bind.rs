@@ -1,4 +1,4 @@
-//! Knobs held against a pipeline: which slot each acts on, and what it may be set to there.
+//! Knobs matched to a pipeline: which slot each acts on, and what it may be set to there.
 
 use super::{Knob, KnobBoard, KnobSlot, Setting};
 use crate::knobs::dial::{Dial, dial};
@@ -28,8 +28,11 @@ impl KnobBoard {
                     .hint("give the second another range, or leave it out"));
             }
             if let Some(same) = board.knobs.iter().find(|k| k.turns_what(&knob)) {
-                return Err(fault(format!("the knobs `{}` and `{}` turn the same", same.key, knob.key))
-                    .hint("leave one of them out"));
+                return Err(fault(format!(
+                    "the knobs `{}` and `{}` act on the same target",
+                    same.key, knob.key
+                ))
+                .hint("leave one of them out"));
             }
             board.knobs.push(knob);
         }

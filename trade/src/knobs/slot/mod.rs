@@ -1,12 +1,11 @@
-//! Knobs held against a pipeline, and settings of them as overrides of its file.
+//! Knobs matched to a pipeline, and settings of them as overrides of its file.
 //!
-//! A *slot* is a place in the pipeline that holds one stage. A knob turns the stage of a slot or
-//! one of its parameters. A parameter knob by role (`mesher.edge`) acts on whatever stage is in the
-//! slot, if it has the parameter; one by name (`GridMesher.edge`) on that stage alone. Where it has
-//! nothing to act on it is left out of the setting, so that settings that differ in nothing are
-//! one.
+//! A *slot* is a place in the pipeline that holds one stage. A knob sets the stage of a slot or one
+//! of its parameters. A parameter knob by role (`mesher.edge`) acts on any stage in the slot that
+//! has the parameter; one by name (`GridMesher.edge`) on that stage only. A knob without effect is
+//! left out of the setting, so that settings with equal effect are equal.
 //!
-//! - `bind`: knobs held against the pipeline; `place`: settings as places of a cube; `overrides`:
+//! - `bind`: knobs matched to the pipeline; `place`: settings as places of a cube; `overrides`:
 //!   settings as overrides of the file; `refine`, `reference`: what the reference has in their
 //!   place.
 
@@ -66,7 +65,7 @@ pub struct KnobBoard {
 /// A setting: the value of every knob that acts, by its key.
 pub type Setting = BTreeMap<String, String>;
 
-/// A setting in a line: `mesher.edge 12 mm, solver Rest`.
+/// A setting in a line: `mesher.edge 12 mm, solver StaticEquilibrium`.
 pub fn setting_words(setting: &Setting) -> String {
     let one = |(key, value): (&String, &String)| format!("{key} {}", value.trim_matches('"'));
     setting.iter().map(one).collect::<Vec<_>>().join(", ")

@@ -1,7 +1,7 @@
 //! Values that the reference has in place of the pipeline's own.
 //!
 //! What a pipeline does by default is not always what its garment converges with: where a switch
-//! that is off by default makes the garment forget where it began, the reference needs it on, and
+//! that is off by default makes the result independent of the start, the reference needs it on, and
 //! settings without it are judged against that.
 
 use super::{KnobBoard, Setting};

@@ -200,7 +200,7 @@ fn the_reference_may_have_values_of_its_own() {
         ),
         (
             "StaticEquilibrium.bending_continuation=yes",
-            "`StaticEquilibrium.bending_continuation`: `bending_continuation` wants true | false, found `yes`",
+            "`StaticEquilibrium.bending_continuation`: `bending_continuation` must be true | false, found `yes`",
             "",
         ),
     ] {
@@ -342,11 +342,11 @@ fn faults_word_for_word() {
     for (knobs, message) in [
         (
             ["StaticEquilibrium=StaticEquilibrium,Xpbd", "solver=StaticEquilibrium,Projective"],
-            "the knobs `StaticEquilibrium` and `solver` turn the same",
+            "the knobs `StaticEquilibrium` and `solver` act on the same target",
         ),
         (
             ["StaticEquilibrium.speed=1e-3..1e-2", "solver.speed=1e-2..1e-1"],
-            "the knobs `StaticEquilibrium.speed` and `solver.speed` turn the same",
+            "the knobs `StaticEquilibrium.speed` and `solver.speed` act on the same target",
         ),
     ] {
         assert_eq!(refused(VEST, &knobs), (message.to_owned(), "leave one of them out".to_owned()));

@@ -1,7 +1,7 @@
 //! Runs in processes of their own: memory is each run's own, and a run that the system ends takes
 //! nothing else with it.
 //!
-//! The program starts itself once a run ([`Apart`]). The run's task goes in as one line of JSON;
+//! The program starts itself once per run ([`Apart`]). The run's task goes in as one line of JSON;
 //! what it made comes out as one line of JSON, followed by the artifacts as the cache stores them,
 //! bit by bit. Clocks stand in the child, around the run alone, so that starting a program and
 //! handing results over cost no run time. The child ends as soon as its input is closed, so that

@@ -30,7 +30,7 @@ impl Apart {
             self.start().map_err(|e| failed(format!("a run's own process cannot be started: {e}")))?;
         let (done, answer, words) =
             readers(&mut child).ok_or_else(|| failed("a process without output".into()))?;
-        // A process that is gone takes no task; what it said is told below.
+        // A process that is gone takes no task; its own message is reported below.
         let fed = send(&mut child, task);
         let ended = watch(&done, cancel, task.limit.map(|l| started + l));
         if ended.is_err() {
@@ -122,7 +122,7 @@ pub(super) fn broken_off(status: ExitStatus, words: &[u8], cancel: &Cancel) -> M
     let last: String = last.map_or_else(String::new, |l| format!(": {l}")).chars().take(LAST_WORDS).collect();
     let e = StageError::new(ErrorCode::Internal, format!("the run's own process {how}{last}"));
     Missed::Failed(match signal {
-        Some(KILL) => e.hint("a system that runs out of memory ends a process so"),
+        Some(KILL) => e.hint("a system that is out of memory ends processes like this"),
         _ => e,
     })
 }

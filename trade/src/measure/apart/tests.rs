@@ -100,7 +100,7 @@ fn failure(script: &str) -> StageError {
 fn a_process_that_breaks_off_is_a_failed_run() {
     let killed = failure("kill -9 $$");
     assert_eq!(killed.message, "the run's own process was ended by signal 9");
-    assert_eq!(killed.hint.unwrap(), "a system that runs out of memory ends a process so");
+    assert_eq!(killed.hint.unwrap(), "a system that is out of memory ends processes like this");
     let aborted = failure("echo first >&2; echo 'stack overflow' >&2; kill -6 $$");
     assert_eq!(aborted.message, "the run's own process was ended by signal 6: stack overflow");
     assert_eq!(aborted.hint, None);

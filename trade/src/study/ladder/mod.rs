@@ -1,10 +1,10 @@
-//! The reference: the pipeline refined level by level until its garment stops moving.
+//! The reference: the pipeline refined level by level until its garment no longer changes.
 //!
 //! Level k divides every knob whose card says that less is finer (edge length, time step,
 //! tolerance) by sqrt(2)^k and multiplies those of which more is finer (counts of iterations) by
 //! it, from the pipeline's own values and with the pipeline's own stages. A power at which rounding
-//! leaves every resolution in space where it was is no level. What is no knob is part of the
-//! problem and stays. Levels end once the estimate of what is missing (`richardson`, on the
+//! leaves every resolution in space unchanged is no level. Parameters that are no knobs are part of
+//! the problem and stay. Levels end once the estimate of what is missing (`richardson`, on the
 //! distance that 95 % of the surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than
 //! any setting to be judged by it; or with the share of the budget that is theirs, which is then
 //! said, with the estimate, or that there is none.
@@ -33,8 +33,8 @@ use std::time::{Duration, Instant};
 use toile_core::{Length, StageError};
 use toile_pipeline::cache::Cache;
 
-/// Factor between levels: twice the triangles, so that a further level is never far out of the
-/// budget.
+/// Factor between levels: twice the triangles, so that one more level never exceeds the budget by
+/// much.
 pub const RATIO: f64 = std::f64::consts::SQRT_2;
 /// Missing distance at which the reference counts as found, mm: a quarter of what a tape measure
 /// resolves.
@@ -43,8 +43,8 @@ pub const CLOSE_ENOUGH: f64 = 0.25;
 pub const FINER: f64 = 1.3;
 /// Levels at most: 2^9 times the triangles.
 const MOST_LEVELS: usize = 10;
-/// Powers of the ratio among which levels are looked for: a single part of an edge takes two to
-/// become another number.
+/// Powers of the ratio that are tried for the next level: a count of one part needs two to become
+/// another number.
 const MOST_POWERS: i32 = 2 * MOST_LEVELS as i32;
 /// Said where a finer level there is not.
 const NO_FINER: &str = "no knob can be refined further";

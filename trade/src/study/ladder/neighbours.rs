@@ -2,7 +2,7 @@
 //!
 //! What a fiftieth of a resolution adds to the error of a mesh is a twenty-fifth of that error at
 //! second order, so what lies farther apart are states of rest that the mesh picks by chance. Moved
-//! starts of one mesh do not tell of those.
+//! starts of one mesh do not show those.
 
 use super::{RATIO, ReferenceSearch};
 use crate::errors::compare;

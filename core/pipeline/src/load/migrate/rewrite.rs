@@ -17,7 +17,7 @@ pub(super) struct TextEdit {
 pub(super) enum Followed {
     /// It is as it was, or its value cannot be converted.
     Same,
-    /// It is no more, with what does its work now.
+    /// It was removed; the text says what does its work now.
     Removed(&'static str),
     /// Its new name and value.
     Renamed(String, String),
@@ -112,7 +112,7 @@ impl Migrator<'_> {
         if let Some(twice) = entries.iter().filter_map(|e| e.key.as_ref()).find(|k| self.at(k) == name) {
             let message = format!("`{old}` is now called `{name}`, which is given as well");
             let fault = Fault::new("old_name", message).at(key, "old name").at(twice, "new name");
-            self.faults.push(fault.hint("leave one of them away".to_owned()));
+            self.faults.push(fault.hint("leave one of them out".to_owned()));
             return;
         }
         let same = value == self.at(&entry.value.span);

@@ -108,7 +108,7 @@ fn a_value_that_cannot_be_converted_and_a_name_given_twice_are_left_to_the_user(
     let text = "(stages: [Threshold(offset: 1.0, bias: 2.0)])";
     let faults = migrate(text, "x.ron", &registry()).unwrap_err().faults;
     assert_eq!(faults[0].message, "`offset` is now called `bias`, which is given as well");
-    assert_eq!(faults[0].hint.as_deref(), Some("leave one of them away"));
+    assert_eq!(faults[0].hint.as_deref(), Some("leave one of them out"));
 }
 
 #[test]

@@ -66,7 +66,7 @@ impl Standing {
 }
 
 impl Quality {
-    /// What its claim is worth for `pipeline`, which is loaded with it.
+    /// Whether the quality was measured for `pipeline`, which is loaded with it, as it is now.
     pub fn standing(&self, pipeline: &Pipeline) -> Standing {
         let Some(basis) = &self.basis else {
             return if self.measured.is_some() { Standing::Unknown } else { Standing::Promised };

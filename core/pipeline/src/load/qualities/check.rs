@@ -1,4 +1,4 @@
-//! The settings of every quality, held against the file that they are in.
+//! The settings of every quality, compared with the file that they are in.
 
 use super::{Quality, named};
 use crate::load::fault::Fault;

@@ -12,7 +12,7 @@
 //! A quality promises a measured error, of the pipeline that it was measured for, and nothing else;
 //! `toile tune PIPELINE --quality NAME=LENGTH` measures and writes it. Its settings are overrides
 //! in the form of `--set`. Every load of the file checks each of them against the file as it
-//! stands, so that a quality never fails first when somebody asks for it.
+//! stands, so that a fault of a quality shows before the quality is requested.
 //!
 //! - `read`: the field's entries; `check`: their settings; `write`: the field put into a file's
 //!   text; `basis`: what a claim was measured for, and whether that is the pipeline at hand.

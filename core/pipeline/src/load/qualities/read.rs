@@ -16,7 +16,7 @@ const FORM: &str = "Quality(name: \"Draft\", max_error: \"10 mm\", set: [...])";
 /// Reads the field's value; an entry with a fault is left out.
 pub(in crate::load) fn read(text: &str, value: &ValueTree, faults: &mut Vec<Fault>) -> Vec<Quality> {
     let ValueShape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
-        let fault = Fault::new("bad_value", "`qualities` wants a list").at(&value.head(), "");
+        let fault = Fault::new("bad_value", "`qualities` must be a list").at(&value.head(), "");
         faults.push(fault.hint(format!("write `qualities: [{FORM}]`")));
         return Vec::new();
     };
@@ -154,7 +154,7 @@ impl QualityReader<'_> {
     fn words(&mut self, field: &str, value: &ValueTree) -> Option<String> {
         let parsed = ron_options().from_str(self.at(&value.span)).ok();
         if parsed.is_none() && !value.is_broken {
-            self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
+            self.fault("bad_value", format!("`{field}` must be text in quotes"), &value.span);
         }
         parsed
     }
@@ -189,7 +189,7 @@ impl QualityReader<'_> {
     /// The list of `PATH=VALUE`, each with its place; none where one of them has a fault.
     fn settings(&mut self, value: &ValueTree) -> Option<Vec<(Override, Range<usize>)>> {
         let ValueShape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
-            let fault = Fault::new("bad_value", "`set` wants a list of texts").at(&value.head(), "");
+            let fault = Fault::new("bad_value", "`set` must be a list of texts").at(&value.head(), "");
             let form = "write `set: [\"stages.GridMesher.edge=\\\"24 mm\\\"\"]`";
             self.faults.push(fault.hint(form.to_owned()));
             return None;

@@ -92,13 +92,13 @@ fn written(quality: &Quality) -> String {
     lines.join("\n") + "),"
 }
 
-/// Puts whole lines last into a group, before its closing bracket, with a comma behind what stands
-/// before.
+/// Appends whole lines to a group, before its closing bracket, and adds a comma after the last
+/// entry where it has none.
 fn last_in(text: &str, group: &ValueTree, entries: &[GroupEntry], lines: &str) -> String {
     let close = group.span.end.saturating_sub(1);
     let comma = entries.last().map(|e| e.value.span.end).filter(|end| comma_after(text, *end).is_none());
     let mut out = text.to_owned();
-    // From the end to the start, so that places before stay as they are.
+    // Insertions go from the end to the start, so that earlier offsets stay valid.
     let line = text[..close].rfind('\n').map_or(0, |i| i + 1);
     match text[line..close].trim().is_empty() && line > 0 {
         true => out.insert_str(line, lines),

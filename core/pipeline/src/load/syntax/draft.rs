@@ -67,16 +67,16 @@ impl Draft {
 /// The stages that could be made.
 #[derive(Debug, Default)]
 pub(crate) struct Finished {
-    /// Those that are fed by such, near and far.
+    /// Stages whose inputs, directly and indirectly, all come from stages that could be made.
     pub(crate) nodes: Vec<Node>,
-    /// Of each of these, whether all its values are its own.
+    /// For each of `nodes`, whether all values of its parameters are those that the user wrote.
     pub(crate) own: Vec<bool>,
-    /// The others whose values are their own, fed by nothing.
+    /// Other stages with only values that the user wrote, without inputs.
     pub(crate) alone: Vec<Node>,
 }
 
 impl Finished {
-    /// Takes all stages out of the graph, where it is not that of the file.
+    /// Removes all inputs of the stages, for a graph that is not that of the file.
     pub(crate) fn apart(self) -> Self {
         let Finished { nodes, own, mut alone } = self;
         let of_file = nodes.into_iter().zip(own).filter(|(_, own)| *own).map(|(node, _)| node);
@@ -90,7 +90,7 @@ fn nothing(card: &Card) -> Vec<Feed> {
     card.inputs.iter().map(|_| Feed::Nothing).collect()
 }
 
-/// The stages that could be made, of these drafts with these feeds.
+/// The stages that could be made from these drafts with these inputs.
 pub(crate) fn finished(drafts: Vec<Draft>, feeds: Vec<Vec<Feed>>) -> Finished {
     let mut all = Finished::default();
     // Where each draft stands among the nodes.

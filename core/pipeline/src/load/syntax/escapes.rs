@@ -1,5 +1,5 @@
-//! Backslashes in texts: `"C:\Users\me\tee.jpg"` is a path of Windows to whoever writes it, and
-//! holds escapes to RON.
+//! Backslashes in texts: `"C:\Users\me\tee.jpg"` is meant as a path of Windows, but to RON it
+//! contains escapes.
 //!
 //! `\U` and `\P` are no escapes at all, which the parser refuses; `\t` and `\n` are, and would put
 //! a tab into a path. No text of a pipeline needs a control character, so these are refused as
@@ -51,8 +51,7 @@ fn bytes(rest: &str) -> Option<(usize, char)> {
     None
 }
 
-/// What is to be said of a backslash that begins no escape, at its byte; the text around it has
-/// that content.
+/// The message and hint for a backslash that begins no escape; `content` is the text around it.
 pub(crate) fn no_escape(rest: &str, content: &str) -> (String, String) {
     let next = rest.chars().nth(1).filter(|c| !c.is_control() && !c.is_whitespace());
     let shown: String = std::iter::once('\\').chain(next).collect();

@@ -1,7 +1,7 @@
 //! From RON text to its syntax tree.
 //!
 //! The parser knows brackets, names, literals and comments, and leaves the meaning of literals to
-//! `ron`. It exists because `ron` forgets places once a value is read, and because its own
+//! `ron`. It exists because `ron` keeps no places once a value is read, and because its own
 //! messages cannot name the bracket that was never closed. Cost: one pass over the text. Limits:
 //! nesting up to [`MAX_DEPTH`].
 
@@ -60,8 +60,8 @@ fn fault(message: impl Into<String>, span: Range<usize>) -> SyntaxFault {
 struct Parser<'a> {
     text: &'a str,
     at: usize,
-    /// The opening quote of the last text that runs over a line's end: often one that was to end
-    /// on its line.
+    /// The opening quote of the last text that runs over the end of a line: often the closing quote
+    /// is missing.
     long_text: Option<Range<usize>>,
     /// The last text in quotes that was read, whole.
     last_text: Option<Range<usize>>,
@@ -340,7 +340,7 @@ impl<'a> Parser<'a> {
         Ok(GroupEntry { key, value: self.value(depth + 1)? })
     }
 
-    /// `name:`, if that is what comes.
+    /// Reads `name:`, if that comes next.
     fn field(&mut self) -> Result<Option<Range<usize>>, SyntaxFault> {
         let from = self.at;
         if let Some(name) = self.name() {

@@ -10,7 +10,7 @@ use crate::load::fault::Fault;
 use crate::load::syntax::parser::{Meant, SyntaxFault, TextRepairs, repaired};
 use crate::load::syntax::tree::ValueTree;
 
-/// The most faults of syntax that are told at once.
+/// The most faults of syntax that are reported at once.
 const MAX_SYNTAX: usize = 12;
 
 /// The longest text that is read on after a fault, bytes.
@@ -36,7 +36,7 @@ pub(crate) fn read(text: &str) -> (Option<ValueTree>, Vec<Fault>) {
     }
 }
 
-/// What was meant: that with which the parser comes farthest, beyond the fault.
+/// The most probable repair: the one with which the parser gets farthest beyond the fault.
 fn best(text: &str, repairs: &TextRepairs, fault: &SyntaxFault) -> Option<(Meant, TextRepairs)> {
     let mut best: Option<(usize, Meant, TextRepairs)> = None;
     for meant in &fault.meant {

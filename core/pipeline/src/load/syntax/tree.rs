@@ -9,8 +9,8 @@ pub(crate) struct ValueTree {
     pub(crate) span: Range<usize>,
     /// What it is.
     pub(crate) shape: ValueShape,
-    /// True where something in it has a fault of syntax, which was told: nothing more is to be said
-    /// of its text.
+    /// True where something in it has a fault of syntax. That fault is reported already, so its
+    /// text is not checked again.
     pub(crate) is_broken: bool,
 }
 

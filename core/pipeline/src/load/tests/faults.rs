@@ -65,7 +65,7 @@ fn every_element_of_a_list_or_map_is_checked() {
     let expected = [
         "vest.ron:5:45: `width` in `photos`: the length 52 has no unit; write \"52 mm\" or \"52 cm\"",
         "vest.ron:6:45: `width` in `photos`: the length 52 has no unit; write \"52 mm\" or \"52 cm\"",
-        "vest.ron:20:14: `seams` wants a list of Match(...): there is no choice `Macth`; did you mean `Match`?",
+        "vest.ron:20:14: `seams` must be a list of Match(...): there is no choice `Macth`; did you mean `Match`?",
         "vest.ron:20:62: `seams`: \"a\" is not an edge; write \"panel.edge\", like \"front.hem\"",
     ];
     assert_eq!(faults(&text).lines().collect::<Vec<_>>(), expected);
@@ -122,24 +122,24 @@ fn a_wrong_type_is_named_by_its_field() {
     check(
         "radius: 1",
         "radius: \"one\"",
-        &["vest.ron:12:35: `radius` wants a whole number, found `\"one\"`"],
+        &["vest.ron:12:35: `radius` must be a whole number, found `\"one\"`"],
     );
-    check("radius: 1", "radius: 1.5", &["vest.ron:12:35: `radius` wants a whole number, found `1.5`"]);
-    check("low: 20", "low: \"x\"", &["vest.ron:14:20: `low` wants a number, found `\"x\"`"]);
-    check("low: 20", "low: [1]", &["vest.ron:14:20: `low` wants a number, found `[...]`"]);
-    check("low: 20", "low: Some", &["vest.ron:14:20: `low` wants a number, found `Some`"]);
-    check("\"cotton poplin\"", "3", &["vest.ron:10:20: `name` wants text, found `3`"]);
-    check("\"vest\"", "vest", &["vest.ron:3:11: `name` wants text in quotes"]);
-    check("Eight", "8", &["vest.ron:12:20: `mask` wants Four | Eight, found `8`"]);
+    check("radius: 1", "radius: 1.5", &["vest.ron:12:35: `radius` must be a whole number, found `1.5`"]);
+    check("low: 20", "low: \"x\"", &["vest.ron:14:20: `low` must be a number, found `\"x\"`"]);
+    check("low: 20", "low: [1]", &["vest.ron:14:20: `low` must be a number, found `[...]`"]);
+    check("low: 20", "low: Some", &["vest.ron:14:20: `low` must be a number, found `Some`"]);
+    check("\"cotton poplin\"", "3", &["vest.ron:10:20: `name` must be text, found `3`"]);
+    check("\"vest\"", "vest", &["vest.ron:3:11: `name` must be text in quotes"]);
+    check("Eight", "8", &["vest.ron:12:20: `mask` must be Four | Eight, found `8`"]);
     check(
         "Eight",
         "Eigth",
         &[
-            "vest.ron:12:20: `mask` wants Four | Eight: there is no choice `Eigth`; did you mean `Eight`? there is `Four`, `Eight`",
+            "vest.ron:12:20: `mask` must be Four | Eight: there is no choice `Eigth`; did you mean `Eight`? there is `Four`, `Eight`",
         ],
     );
-    check("\"vest\"", "\"vest\", plugins: 3", &["vest.ron:3:28: `plugins` wants a list of texts"]);
-    check("\"vest\"", "\"vest\", plugins: [3]", &["vest.ron:3:29: `plugins` wants text in quotes"]);
+    check("\"vest\"", "\"vest\", plugins: 3", &["vest.ron:3:28: `plugins` must be a list of texts"]);
+    check("\"vest\"", "\"vest\", plugins: [3]", &["vest.ron:3:29: `plugins` must be text in quotes"]);
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn lengths_carry_their_unit() {
     check(
         "\"12 mm\"",
         "true",
-        &["vest.ron:15:26: `edge` wants a length with its unit, like \"12 mm\", found the boolean `true`"],
+        &["vest.ron:15:26: `edge` must be a length with its unit, like \"12 mm\", found the boolean `true`"],
     );
 }
 
@@ -198,13 +198,13 @@ fn a_fault_deep_in_a_table_is_put_at_its_own_field() {
         "Match",
         "Macth",
         &[
-            "vest.ron:20:14: `seams` wants a list of Match(...): there is no choice `Macth`; did you mean `Match`?",
+            "vest.ron:20:14: `seams` must be a list of Match(...): there is no choice `Macth`; did you mean `Match`?",
         ],
     );
     check(
         "\"front.side_left\", ",
         "",
-        &["vest.ron:20:14: `seams` wants a list of Match(...): it needs 2 values, found 1"],
+        &["vest.ron:20:14: `seams` must be a list of Match(...): it needs 2 values, found 1"],
     );
 }
 
@@ -216,7 +216,7 @@ fn a_stage_is_written_with_brackets() {
     check(
         "Vest()",
         "Otsu()",
-        &["vest.ron:8:12: `style` wants a style stage, `Otsu` is a binariser; there is `Vest`"],
+        &["vest.ron:8:12: `style` must be a style stage, `Otsu` is a binariser; there is `Vest`"],
     );
 }
 
@@ -250,7 +250,7 @@ fn stages_must_be_there() {
     let missing = "the field `stages` is missing; write `stages: [ ... ]` with the stages in their order";
     assert_eq!(faults("()"), format!("vest.ron:1:1: {missing}"));
     assert_eq!(faults("(stages: [])"), "vest.ron:1:10: `stages` holds no stage");
-    assert_eq!(faults("(stages: Otsu())"), "vest.ron:1:10: `stages` wants a list, `[Otsu(), ...]`");
+    assert_eq!(faults("(stages: Otsu())"), "vest.ron:1:10: `stages` must be a list, `[Otsu(), ...]`");
     for other in ["[]", "3", "Pipeline()", "{}"] {
         assert_eq!(faults(other), "vest.ron:1:1: a pipeline file is written `(name: ..., stages: [...])`");
     }
@@ -274,7 +274,7 @@ fn all_faults_come_out_in_one_run() {
         "vest.ron:13:9: unknown stage `Otzu`; did you mean `Otsu`?",
         "vest.ron:14:20: `low` is NaN, which is not a finite number",
         "vest.ron:17:9: `Painter` takes a named set (panel), but `Merge` makes a single panel",
-        "vest.ron:20:14: `seams` wants a list of Match(...): there is no choice `Macth`; did you mean `Match`?",
+        "vest.ron:20:14: `seams` must be a list of Match(...): there is no choice `Macth`; did you mean `Match`?",
     ];
     assert_eq!(faults(&text).lines().collect::<Vec<_>>(), expected);
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A file of these stages, one a line from line 3 on, with photos in front.
+/// A file of these stages, one per line from line 3 on, with photos in front.
 fn with(stages: &[&str]) -> String {
     let photos = "\"front\": (file: \"f.jpg\", width: \"5 cm\")";
     format!("(photos: {{{photos}}},\nstages: [\n{}\n])", stages.join(",\n"))
@@ -120,7 +120,7 @@ fn stages_of_one_name_are_told_apart_by_what_they_take() {
         roles(&["Otsu()", "Laplacian(threshold: 7)", "GridMesher()", "Laplacian(lambda: 0.25)"]),
         ["Laplacian edge detector(threshold: 7.0)", "Laplacian2 smoother(lambda: 0.25)"]
     );
-    // Behind the mesher `from` tells that edges are meant once more.
+    // After the mesher, `from` says that the edges are meant again.
     let twice =
         ["Otsu()", "Canny()", "GridMesher()", "Laplacian(from: \"Otsu\")", "Taubin(from: \"GridMesher\")"];
     assert_eq!(roles(&twice), ["Laplacian edge detector(threshold: 6.0)"]);

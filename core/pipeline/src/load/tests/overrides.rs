@@ -97,7 +97,7 @@ fn an_unknown_path_comes_with_the_nearest_one() {
     refused("body.height.x=3", "--set body.height.x=3: `height` has no parts");
     refused(
         "stages.Otsu.bias.x=1",
-        "--set stages.Otsu.bias.x=1: the file gives no `bias` to change a part of; \
+        "--set stages.Otsu.bias.x=1: the file has no `bias`; \
          set all of it: `--set 'stages.Otsu.bias=...'`",
     );
 }

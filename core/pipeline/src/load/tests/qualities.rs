@@ -93,7 +93,7 @@ vest.ron:14:67: quality `C`: a quality cannot set `qualities`";
     assert_eq!(own.join("\n"), expected);
     assert!(!graph.is_empty(), "a stage in the wrong place is found");
     assert!(graph.iter().all(|l| l.contains(": quality `D`: ")), "{graph:?}");
-    // The same faults with `--set` and whichever quality is asked for, each once.
+    // The same faults with `--set` and whichever quality is requested, each once.
     let count = shown.lines().count();
     assert_eq!(set(&text, &["name=\"x\""]).unwrap_err().faults.len(), count);
     assert_eq!(at(&text, "D", &[]).unwrap_err().faults.len(), count);
@@ -105,7 +105,7 @@ fn the_form_of_an_entry_word_for_word() {
     let shown = |field: &str| faults(&with(field));
     assert_eq!(
         shown("3"),
-        "vest.ron:11:16: `qualities` wants a list; write `qualities: [Quality(name: \"Draft\", max_error: \"10 mm\", set: [...])]`"
+        "vest.ron:11:16: `qualities` must be a list; write `qualities: [Quality(name: \"Draft\", max_error: \"10 mm\", set: [...])]`"
     );
     assert_eq!(shown("[Draft()]"), format!("vest.ron:11:17: expected a quality; {form}"));
     assert_eq!(
@@ -113,8 +113,8 @@ fn the_form_of_an_entry_word_for_word() {
         format!(
             "vest.ron:11:17: the quality lacks `name`; {form}\n\
              vest.ron:11:25: unknown field `nam`; did you mean `name`? a quality has `name`, `max_error`, `set`, `measured`, `measured_for`\n\
-             vest.ron:11:46: `max_error` wants text in quotes\n\
-             vest.ron:11:54: `set` wants a list of texts; write `set: [\"stages.GridMesher.edge=\\\"24 mm\\\"\"]`"
+             vest.ron:11:46: `max_error` must be text in quotes\n\
+             vest.ron:11:54: `set` must be a list of texts; write `set: [\"stages.GridMesher.edge=\\\"24 mm\\\"\"]`"
         )
     );
     assert_eq!(

@@ -115,7 +115,7 @@ fn deep_nesting_is_a_fault_and_no_crash() {
     }
     let inner = format!("{}1{}", "[".repeat(50), "]".repeat(50));
     let shown = faults(&kit::VEST.replace("low: 20", &format!("low: {inner}")));
-    assert_eq!(shown, "vest.ron:14:20: `low` wants a number, found `[...]`");
+    assert_eq!(shown, "vest.ron:14:20: `low` must be a number, found `[...]`");
 }
 
 #[test]

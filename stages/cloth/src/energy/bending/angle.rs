@@ -10,8 +10,8 @@ use nalgebra::Matrix3;
 
 use toile_geometry::Vec3;
 
-/// A triangle's normal is taken at least this long (share of the squared edge): keeps a collapsed
-/// triangle finite.
+/// Least length of a triangle's normal, as a share of the squared edge: keeps a collapsed triangle
+/// finite.
 const LEAST_NORMAL: f64 = 1e-9;
 
 /// Signed angle between the triangles (a, b, p) and (b, a, q), in radians, -pi to pi.

@@ -1,13 +1,13 @@
-//! What a bending mesh really is, against the sheet it stands for.
+//! The bending stiffness that a mesh has, against that of the sheet that it represents.
 //!
-//! Load the free rest mesh of each panel with constant moments along its border (along x, along y,
-//! twist): the exact sheet answers with constant curvature. The quadratic that fits the mesh's
-//! answer best has a curvature as well, and so gives a compliance tensor C. Coupled hinges asked
-//! for rigidity D are built with `D C D` in place of it: right to second order in what is wrong.
-//! Lone hinges are multiplied by one factor, that of the mean over all directions of a cylinder.
-//! Letting the vertices give way matters: held on a quadratic surface an irregular mesh of coupled
-//! hinges has exactly the right energy, and 3 % of it is gone in equilibrium. Cost: one sparse
-//! factor of a number a vertex pair, some 3 % of a Newton step, once a mesh.
+//! The free rest mesh of each panel is loaded with constant moments along its border (along x,
+//! along y, twist): the exact sheet takes a constant curvature. The curvature of the quadratic that
+//! fits the mesh's displacement best gives a compliance tensor C. Coupled hinges of rigidity D are
+//! built with `D C D` in place of D: right to second order in the error. Lone hinges are multiplied
+//! by one factor, the mean over all directions of a cylinder. The vertices must be free to move:
+//! held on a quadratic surface, an irregular mesh of coupled hinges has exactly the right energy,
+//! but in equilibrium 3 % less. Cost: one sparse factor with one number per vertex pair, some 3 %
+//! of a Newton step, once per mesh.
 
 use nalgebra::{Matrix3, Vector2};
 
@@ -20,7 +20,7 @@ use toile_geometry::Vec3;
 
 /// Triangles of different panels meet with different rest frames, m.
 const SAME_FRAME: f64 = 1e-9;
-/// A mesh that asks for more correction than this (either way) is too small to judge.
+/// A mesh that needs more correction than this (either way) is too small to judge.
 const LARGEST_FACTOR: f64 = 2.0;
 
 /// Hinges that lean with the square of their direction's cosine change the two stiffnesses by two
@@ -41,7 +41,7 @@ pub(crate) struct Calibration {
     pub lean: f64,
 }
 
-/// The rest mesh cut apart into panels: seam vertices count once a panel.
+/// The rest mesh cut apart into panels: seam vertices count once per panel.
 struct Panels {
     corners: Vec<[u32; 3]>,
     /// Rest place of each vertex.
@@ -153,7 +153,7 @@ fn find(parent: &mut [usize], mut t: usize) -> usize {
 }
 
 /// Rigidity by (kxx, kyy, kxy) to build the coupled hinges of each triangle with, so that its panel
-/// has the rigidity asked for.
+/// has the requested rigidity.
 pub(super) fn calibrated(sheet: &Sheet, rigidities: &[Rigidity]) -> Vec<Matrix3<f64>> {
     let size = rigidities.iter().map(|r| r.warp.max(r.weft)).fold(0.0, f64::max);
     let mut wanted: Vec<Matrix3<f64>> = rigidities.iter().map(Rigidity::tensor).collect();
@@ -175,7 +175,7 @@ pub(super) fn calibrated(sheet: &Sheet, rigidities: &[Rigidity]) -> Vec<Matrix3<
     wanted
 }
 
-/// `D C D`, unless the correction is too large to be believed.
+/// `D C D`, unless the correction is too large to be plausible.
 fn correct(d: &Matrix3<f64>, compliance: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let root = d.diagonal().map(f64::sqrt);
     let excess = Matrix3::from_fn(|i, j| root[i] * compliance[(i, j)] * root[j]);
@@ -184,7 +184,7 @@ fn correct(d: &Matrix3<f64>, compliance: &Matrix3<f64>) -> Option<Matrix3<f64>> 
     fair.then(|| d * compliance * d)
 }
 
-/// Stiffness against lifts of lone hinges of rigidity 1, one number a vertex pair.
+/// Stiffness against lifts of lone hinges of rigidity 1, one number per vertex pair.
 fn lone_matrix(sheet: &Sheet, flaps: &[Flap], panels: &Panels) -> BlockMatrix {
     let vertices: Vec<[u32; 4]> = flaps.iter().map(|f| panels.vertices(sheet, f)).collect();
     let mut a =
@@ -231,7 +231,7 @@ fn coupled_matrix(sheet: &Sheet, flaps: &[Flap], panels: &Panels, d: &[Matrix3<f
 
 impl Panels {
     /// Mean curvature (along x, along y, twist) of each panel under each unit moment; none for a
-    /// panel too small to tell.
+    /// panel too small to measure.
     fn answers(
         &self,
         sheet: &Sheet,

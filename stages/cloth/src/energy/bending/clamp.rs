@@ -46,8 +46,8 @@ impl ClampedTriangle {
         angle(&x[0], &x[1], &x[2], &(x[0] + self.outward))
     }
 
-    /// The plane is fixed in space: its tip moves with the edge, so its own turning must be taken
-    /// back.
+    /// The plane is fixed in space, but its tip moves with the edge: the turning that this causes
+    /// is subtracted.
     fn leaves(&self, x: &[Vec3; 3]) -> (Leaf, Leaf) {
         (Leaf::new(&x[0], &x[1], &x[2], false), Leaf::new(&x[0], &x[1], &(x[0] + self.outward), true))
     }

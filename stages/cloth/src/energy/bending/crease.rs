@@ -1,12 +1,12 @@
 //! Seams that are pressed to stay folded.
 //!
 //! A hinge of the quadratic isometric model (Bergou et al. 2006) measures the sum c of the two unit
-//! directions that lead from its edge into its triangles; folded by an angle `a` that sum is
-//! `2 sin(a / 2)` long and lies along the mean n of their normals. A crease wants that vector to be
-//! `m n` where plain cloth wants none: `k / 2 |c - m n|²`, of which this energy is what it adds to
-//! plain cloth. While the sheet hardly stretches, `c` lies along `n`, so that the turning of `n` is
-//! left out of the derivatives, as it is for friction between yarns (see `hysteresis`); the second
-//! derivative stays that of plain cloth. Cost: a few operations a hinge of the seam.
+//! directions that lead from its edge into its triangles; folded by an angle `a` that sum is `2
+//! sin(a / 2)` long and lies along the mean n of their normals. At a crease the rest value of that
+//! vector is `m n`, in plain cloth it is 0: `k / 2 |c - m n|²`, of which this energy is what it
+//! adds to plain cloth. While the sheet hardly stretches, `c` lies along `n`, so that the turning
+//! of `n` is left out of the derivatives, as it is for friction between yarns (see `hysteresis`);
+//! the second derivative stays that of plain cloth. Cost: a few operations per hinge of the seam.
 
 use super::quadratic::{Fold, folds};
 use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};

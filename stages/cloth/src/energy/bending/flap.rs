@@ -10,7 +10,7 @@ use crate::mesh::{Edge, Sheet, Side};
 pub(crate) struct Flap {
     /// Edge start, edge end, left tip, right tip.
     pub vertices: [u32; 4],
-    /// Small fold angle = sum of these times the lifts, 1/m.
+    /// A small fold angle is the sum of these times the lifts, 1/m.
     pub weights: [f64; 4],
     /// Edge length squared over the area of the two triangles.
     pub slenderness: f64,

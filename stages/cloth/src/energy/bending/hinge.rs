@@ -1,15 +1,15 @@
 //! The hinge: the sheet resists the fold angles over the three edges of each triangle together,
 //! `E = (theta - rest) . K (theta - rest) / 2`.
 //!
-//! K turns the three angles into the curvature that shows in them (see `patch`) and that into
-//! energy by the plate's own tensor, here with Poisson's ratio 0. So every quadratic surface costs
-//! what it should on every mesh, in every direction, and free edges need nothing of their own. The
-//! angles are those of the folded sheet, at any fold (Grinspun, Hirani, Desbrun, Schroeder, 2003,
-//! coupled after Grinspun, Gingold, Reisman, Zorin, 2006). Vertices of an irregular mesh give way a
-//! little when they may, 3 % alike in all directions; `calibrate` takes that out. Cost: three
-//! angles a triangle, and a matrix with half as many entries again as lone hinges have. Limit:
-//! squares with alternating diagonals, whose vertices of two kinds give way by a quarter, stay 20 %
-//! too soft.
+//! K converts the three angles into the curvature that they measure (see `patch`), and that into
+//! energy by the tensor of the plate, here with Poisson's ratio 0. So every quadratic surface has
+//! its exact energy on every mesh, in every direction, and free edges need no special treatment.
+//! The angles are those of the folded sheet, at any fold (Grinspun, Hirani, Desbrun, Schroeder,
+//! 2003, coupled after Grinspun, Gingold, Reisman, Zorin, 2006). In equilibrium the vertices of an
+//! irregular mesh move a little, which makes it 3 % softer in all directions alike; `calibrate`
+//! corrects that. Cost: three angles per triangle, and a matrix with half as many entries again as
+//! lone hinges have. Limit: squares with alternating diagonals, whose vertices are of two kinds,
+//! lose a quarter of their stiffness in equilibrium and stay 20 % too soft.
 
 use super::angle::{Leaf, angle};
 use super::calibrate::calibrated;

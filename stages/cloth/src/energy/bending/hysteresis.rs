@@ -7,7 +7,7 @@
 //! friction on the body: a spring at small turns, whose moment approaches the couple at large ones.
 //! The angle moves along while the cloth moves fast. The angle is the component of the fold along
 //! the normal of the hinge. The rotation of the normal is left out of the derivatives, for a sheet
-//! that hardly stretches curves only along its normal. Cost: a few operations a hinge.
+//! that hardly stretches curves only along its normal. Cost: a few operations per hinge.
 
 use super::quadratic::{Fold, folds};
 use crate::contact::coulomb::SLIP_RETURN;
@@ -71,7 +71,7 @@ impl Hysteresis {
 }
 
 impl Hold {
-    /// The turn from the held angle in slip tolerances, and the root of one plus its square.
+    /// The difference from the held angle in slip tolerances, and the root of one plus its square.
     fn turn(&self, angle: f64, held: f64) -> (f64, f64) {
         let turn = if self.tolerance > 0.0 { (angle - held) / self.tolerance } else { 0.0 };
         (turn, (1.0 + turn * turn).sqrt())

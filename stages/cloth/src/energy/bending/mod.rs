@@ -2,10 +2,14 @@
 //!
 //! | model | promises | costs |
 //! |---|---|---|
-//! | [`Hinge`] | rigidity D in every direction on every mesh but alternating squares, at any fold, at free edges | three angles a triangle |
-//! | [`Quadratic`] | the same for a sheet that hardly stretches; its matrix never changes | a fixed product an edge |
-//! | [`DiscreteShell`] | rigidity D on the mean of all directions, and never folds through itself | one angle an edge |
-//! | [`SkipOne`] | the classic spring over every second vertex: nothing against a small fold | one square root an edge |
+//! | [`Hinge`] | rigidity D in every direction on every mesh but alternating squares, at any fold,
+//! at free edges | three angles per triangle |
+//! | [`Quadratic`] | the same for a sheet that hardly stretches; its matrix never changes | a fixed
+//! product per edge |
+//! | [`DiscreteShell`] | rigidity D on the mean of all directions, and never folds through itself |
+//! one angle per edge |
+//! | [`SkipOne`] | the classic spring over every second vertex: nothing against a small fold | one
+//! square root per edge |
 //!
 //! Beside them: [`FreeEdge`] for the borders of quadratic hinges, [`ClampedEdge`] for a slope that
 //! is held, [`Creases`] for pressed folds, [`Hysteresis`] for the friction between yarns.

@@ -4,7 +4,7 @@
 //!
 //! The measure is the angle for small folds and grows without bound towards a flat fold, so that a
 //! sheet never folds through itself. The stiffness k is that of the quadratic hinges, calibrated
-//! for the mesh (see `quadratic`); the free edges' correction goes with it. Cost: one angle an
+//! for the mesh (see `quadratic`); the free edges' correction goes with it. Cost: one angle per
 //! edge. Limits: flat at rest; hinges each by itself are stiffer across the grain of a mesh than
 //! along it, by up to 4 % on irregular meshes; a fold within 0.03 degrees of flat counts as that.
 

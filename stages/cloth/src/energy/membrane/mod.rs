@@ -2,7 +2,8 @@
 //!
 //! | model | promises | costs |
 //! |---|---|---|
-//! | [`StVenantKirchhoff`] | the exact linear-elastic plate in small strain on any mesh, large rotations | one 3 x 2 gradient a triangle |
+//! | [`StVenantKirchhoff`] | the exact linear-elastic plate in small strain on any mesh, large
+//! rotations | one 3 x 2 gradient per triangle |
 //! | [`Woven`] | measured warp, weft and shear curves, any direction | the same and two square roots |
 //! | [`Springs`] | the classic families; right only along the mesh lines | one square root an edge |
 

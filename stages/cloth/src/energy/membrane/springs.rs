@@ -30,7 +30,7 @@ struct Spring {
     nodes: [u32; 2],
     rest: f64,
     family: Family,
-    /// Of which fabric.
+    /// Index of its fabric.
     fabric: u32,
     /// Cloth width that the spring stands for, m: tension times width is its force.
     width: f64,
@@ -40,7 +40,7 @@ struct Spring {
 #[derive(Debug, Clone)]
 pub struct Springs {
     springs: Vec<Spring>,
-    /// Of each fabric, by family.
+    /// The curves of each fabric, by family.
     curves: Vec<[Curve; 3]>,
 }
 

@@ -25,7 +25,7 @@ pub fn gathered(nx: u32, ny: u32, ratio: f64) -> Scene {
     let (frill, frill_cells) = panel(nx, ny, 0.3 * ratio, 0.2);
     let mut scene = Scene::new(format!("gathered_{nx}x{ny}"), cloth());
     let top = scene.add_panel("strip", &strip, &upright(&strip, Vector3::zeros()), &strip_cells).start;
-    // Laid in slight waves, for a flat sheet pressed together does not know which way to give.
+    // Slight waves: a flat sheet under compression has no preferred direction of buckling.
     let wave = |p: &Vector2<f64>| {
         let across = p.x / ratio;
         Vector3::new(across, p.y - 0.08, 0.02 * (across * 70.0).sin())

@@ -47,7 +47,7 @@ const SHORTENING_ROUNDS: usize = 4;
 /// Share of its excess length by which an edge is shortened in a round.
 const SHORTENING: f64 = 0.3;
 
-/// Moves nodes until no crossings are left or their number falls no more. `x` becomes the state
+/// Moves nodes until no crossings are left or their number no longer falls. `x` becomes the state
 /// with the fewest crossings; returns how many these are.
 pub(crate) fn uncross(sheet: &Sheet, tree: &ClothTree, pinned: &[bool], x: &mut [Vec3]) -> usize {
     if tree.crossings(x).is_empty() {

@@ -18,8 +18,8 @@ use crate::statics::report::intersecting::intersections_of;
 /// Newton steps of a state of bending continuation.
 const CONTINUATION_STEPS: usize = 60;
 
-/// Speed at which such a state is at rest, as a share of that of the final state. So near to rest
-/// the state depends no more on where it began.
+/// Speed at which such a state is at rest, as a share of that of the final state. A state so near
+/// to rest no longer depends on the start.
 const CONTINUATION_SPEED: f64 = 0.05;
 
 /// How far the centre of mass of a garment without friction may move from its initial place, as a

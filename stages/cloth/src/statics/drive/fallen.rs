@@ -1,4 +1,4 @@
-//! Tells cloth that has fallen past the body from cloth that is still falling onto it.
+//! Distinguishes cloth that has fallen past the body from cloth that is still falling onto it.
 //!
 //! Method: see `contact/past`. Cost: O(n) a step.
 

@@ -53,7 +53,7 @@ impl Solve<'_> {
         Ok(report)
     }
 
-    /// Relaxes a level until it is at rest, or the number of intersecting nodes falls no more.
+    /// Relaxes a level until it is at rest, or the number of intersecting nodes no longer falls.
     fn relax_until_stuck(
         &self,
         mesh: LevelMesh<'_>,

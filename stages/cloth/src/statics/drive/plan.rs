@@ -30,7 +30,7 @@ pub(crate) struct Plan<'a> {
     pub(crate) body: Option<Collider<'a>>,
     /// The solids on which the cloth is sewn, one after the other; empty for the body alone.
     pub(crate) around: &'a [&'a dyn CollisionSurface],
-    /// Tells whether the caller wants to stop.
+    /// Whether the caller has asked to stop.
     pub(crate) stopper: &'a Stopper,
     /// The bounding box of the body, if there is one and the cloth has weight.
     pub(crate) body_box: Option<BodyBox>,

@@ -49,7 +49,8 @@ const FARTHEST: f64 = 0.05;
 /// How fast a wide gap must shrink; otherwise the round ends.
 const SHRINKS: Patience = Patience { steps: 12, share: 0.01 };
 
-/// Factor by which a gap may shrink more under a stronger force than in proportion to it.
+/// A gap may shrink under a stronger force by up to this factor more than in proportion to the
+/// force.
 const MORE_THAN_LINEAR: f64 = 3.0;
 
 /// Widest gap at which seams are joined where crossings are resolved after sewing, as a share of an

@@ -56,7 +56,7 @@ fn middle(i: u32, near: &[u32], layout: &[Vector3<f64>]) -> Vector3<f64> {
     sum / (near.len() + 1) as f64
 }
 
-/// Both directions of the pattern.
+/// Adjacency lists of the pattern: each pair in both directions.
 struct NodeNeighbours {
     starts: Vec<u32>,
     of: Vec<u32>,

@@ -40,8 +40,7 @@ pub(crate) const LEAST_RADIUS: f64 = 0.02;
 pub struct Clearance {
     /// What must be added to the offset of each node, m.
     pub lacks: Vec<f64>,
-    /// The direction out of the body where most of that is lacking; zero for nodes that lack
-    /// nothing.
+    /// The direction out of the body where the clearance lacks most; zero for nodes that lack none.
     pub outwards: Vec<Vec3>,
     /// The deepest point inside the body, m; 0 where none is.
     pub depth: f64,

@@ -124,7 +124,7 @@ impl Elastic {
         self.energies.iter().filter(|e| e.is_hysteretic()).map(|e| e.value(x)).sum()
     }
 
-    /// Adds the gradient of both, N.
+    /// Adds the gradient of the stored energy and of the bending hysteresis, N.
     pub fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]) {
         self.energies.iter().for_each(|e| e.add_gradient(x, gradient));
     }

@@ -4,7 +4,7 @@
 //! Candidates are pairs that may touch. Collisions are found among them when the step begins, and
 //! friction is built from the collisions. A force without contact has only a value, a gradient and
 //! a matrix. Gradient, matrix and friction are those of the collisions at the step's start; the
-//! value of contact is that of the collisions at the place where it is asked for.
+//! value of contact is that of the collisions at the place where it is requested.
 //!
 //! Cost: a dynamic call per force and sum. Limit: values do not add to the energy that a caller
 //! reports as stored, which is that of the sheet and of its weight.

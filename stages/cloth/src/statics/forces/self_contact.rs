@@ -235,7 +235,7 @@ impl Force for SelfContact {
             held.sort_unstable();
             held
         };
-        // Friction outlives its pair by one step.
+        // The friction of a contact acts for one more step after its pair has parted.
         let friction = self.friction_contacts.iter().filter(|c| cut.knows(&c.nodes));
         let renumbered = |c: &FrictionContact| FrictionContact { nodes: cut.renumbered(c.nodes), ..*c };
         Box::new(Self {

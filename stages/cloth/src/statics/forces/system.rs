@@ -155,8 +155,8 @@ impl System<'_> {
         }
     }
 
-    /// Changes moves that lead the cloth past a sharp feature of the body: the cloth gives way
-    /// where it can, and otherwise the moves are shortened.
+    /// Changes moves that lead the cloth past a sharp feature of the body: along the normal where
+    /// that suffices, and otherwise they are shortened.
     pub fn clear_of_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
         self.seek_ridges_along(x, moves);
         let Some(changed) = self.get::<Ridges>().map(|r| r.respond(x, moves, &self.pinned)) else { return };

@@ -1,13 +1,13 @@
 //! Bending continuation: bending starts far too stiff and is lowered level by level to that of the
 //! fabric.
 //!
-//! Cloth has many equilibria, and a solver that goes straight to one of them chooses it by chance:
-//! by rounding in the initial positions. A stiff sheet has few equilibria, mostly one. So the
-//! garment is sewn and first brought to equilibrium as if its bending length were half of its size,
-//! so near to rest that the state depends no more on where it began. Stiffness is then lowered by
-//! factors (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending
-//! length of [`EDGES`] edges. Finer folds, whose shape would depend on the mesh of the level, form
-//! on a finer level. The finest level ends with the bending of the fabric.
+//! Cloth has many equilibria, and a solver that finds one of them directly chooses it by chance: by
+//! rounding in the initial positions. A stiff sheet has few equilibria, mostly one. So the garment
+//! is sewn and first brought to equilibrium as if its bending length were half of its size, so near
+//! to rest that the state no longer depends on the start. Stiffness is then lowered by factors
+//! (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending length of
+//! [`EDGES`] edges. Finer folds, whose shape would depend on the mesh of the level, form on a finer
+//! level. The finest level ends with the bending of the fabric.
 //!
 //! Friction keeps the history of the cloth, too. A garment that stays in place without friction, as
 //! on shoulders, is solved without it, and friction is enabled at the end of each level. A skirt
@@ -109,7 +109,8 @@ mod tests {
     fn every_mesh_passes_through_the_same_states() {
         let cloth = Fabric::isotropic(0.1, 1000.0, 0.0, 0.1 * 10.0 * 0.02_f64.powi(3));
         let continuation = BendingContinuation::of(&[&cloth], 10.0, 0.8, EDGES).unwrap();
-        // Factors of 8000, 1000, 125, 15.6 and 1.95: of the last, edges of 3 mm carry the folds.
+        // Factors of 8000, 1000, 125, 15.6 and 1.95: edges of 3 mm resolve the folds at the last
+        // one.
         assert!((continuation.resolved(0.01) - 125.0).abs() < 1e-9);
         assert!((continuation.resolved(0.003) - 1.953125).abs() < 1e-9);
         assert!((continuation.first() - 8000.0).abs() < 1e-6);

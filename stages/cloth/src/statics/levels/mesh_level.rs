@@ -20,8 +20,8 @@ pub(crate) struct Level<'s> {
 }
 
 impl Level<'_> {
-    /// Sets the positions of its nodes and their tangential displacements. `is_prolonged` tells
-    /// that they come from a coarser level.
+    /// Sets the positions of its nodes and their tangential displacements. `is_prolonged` says that
+    /// they come from a coarser level.
     pub(crate) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>, is_prolonged: bool) {
         if let Some(contact) = self.system.get_mut::<BodyContact>().filter(|_| slides.len() == x.len()) {
             contact.slides = slides;

@@ -64,14 +64,14 @@ impl Nearby {
         &self.at
     }
 
-    /// Of a subdomain whose pairs were sought at `at`, and are valid while no node moves by `reach`
-    /// from there, m.
+    /// For a subdomain whose pairs were searched at `at`, and are valid while no node moves by
+    /// `reach` from there, m.
     pub(crate) fn of_subdomain(at: Vec<Option<Vec3>>, reach: f64) -> Self {
         let at = at.into_iter().flatten().collect();
         Self { tree: None, at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
 
-    /// Of a subdomain with a tree of its own, which holds all triangles that its nodes may meet
+    /// For a subdomain with a tree of its own, which holds all triangles that its nodes may meet
     /// within `reach` of `at`, m.
     pub(crate) fn fenced(tree: ClothTree, at: Vec<Vec3>, reach: f64) -> Self {
         Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }), jammed: false }
@@ -140,9 +140,9 @@ impl Nearby {
         self.tree.as_ref().map_or(0, |t| t.crossings(x).len())
     }
 
-    /// Changes moves that would lead cloth through cloth: the cloth gives way where it can, and
-    /// otherwise its moves are shortened until no pair collides. Returns the share of the moves
-    /// that is left, or 1 while intersections are resolved, which takes long moves.
+    /// Changes moves that would lead cloth through cloth: by a contact response where that
+    /// suffices, and otherwise they are shortened until no pair collides. Returns the share of the
+    /// moves that is left, or 1 while intersections are resolved, which needs long moves.
     pub(crate) fn limit(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
         if self.tree.is_none() && self.fence.is_none() {
             return 1.0;

@@ -8,7 +8,7 @@ use crate::statics::newton::nearby::Nearby;
 use std::ops::ControlFlow;
 use toile_geometry::Vec3;
 
-/// What proves that the cloth is at rest.
+/// Which step proves that the cloth is at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Proof {
     /// Any step in which nothing is fast.
@@ -41,7 +41,7 @@ pub struct NewtonOptions {
     pub non_static: f64,
     /// Farthest that a node may move in a step, m.
     pub farthest: f64,
-    /// What proves that the cloth is at rest.
+    /// Which step proves that the cloth is at rest.
     pub proof: Proof,
     /// Whether steps are made without a line search: cloth then slides over a rough surface, where
     /// some nodes never come to rest.
@@ -76,8 +76,8 @@ pub struct Outcome {
     pub share: f64,
     /// The step of pseudo-time, s.
     pub dt: f64,
-    /// Greatest speed gained in the last proof step, m/s: it tells how far from rest the cloth is.
-    /// `None` before the first one.
+    /// Greatest speed gained in the last proof step, m/s: a measure of how far from rest the cloth
+    /// is. `None` before the first one.
     pub gained: Option<f64>,
 }
 
@@ -91,7 +91,7 @@ pub struct NewtonState {
     pub(crate) outcome: Outcome,
     /// The potentials of the last steps, for the non-monotone line search.
     pub(crate) history: Vec<f64>,
-    /// Whether the next step is a proof step, of [`REST_STEP`](super::to_rest::REST_STEP).
+    /// Whether the next step is a proof step, of length [`REST_STEP`](super::to_rest::REST_STEP).
     pub(crate) verifying: bool,
     /// Consecutive proof steps.
     pub(crate) proof_steps: usize,

@@ -55,7 +55,7 @@ const MOST_PROOF_STEPS: usize = 3;
 /// factorization and hardly moves the cloth.
 const SLOW_STEPS: usize = 3;
 
-/// Least step of pseudo-time in which a low speed tells that nothing slides or falls, s.
+/// Least step of pseudo-time in which a low speed shows that nothing slides or falls, s.
 const SLOW_STEP: f64 = 0.1;
 
 /// Speed above which rest is not tried and a coarser level is not left, m/s, however fast cloth at
@@ -164,7 +164,7 @@ impl NewtonState {
         self.wake();
     }
 
-    /// Tells that the cloth may not be at rest any more.
+    /// Records that the cloth may not be at rest any more.
     pub fn wake(&mut self) {
         self.history.clear();
         (self.verifying, self.reuse_factor) = (false, false);
@@ -353,7 +353,8 @@ impl NewtonState {
         self.verifying = options.proof != Proof::AnyStep && self.slow_steps >= least;
     }
 
-    /// Tells that the cloth has moved outside a step, so that nothing of its end can be reused.
+    /// Records that the cloth has moved outside a step, so that nothing from the end of the last
+    /// step can be reused.
     pub(crate) fn moved(&mut self) {
         (self.end, self.reuse_factor) = (None, false);
     }

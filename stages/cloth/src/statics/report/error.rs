@@ -32,7 +32,7 @@ pub enum Unsolvable {
     Flat,
     /// The forces on it differ too much in size.
     #[error(
-        "the forces on it are too far apart to be told from each other; look for stiffness, density and lengths beyond those of cloth"
+        "the forces on it differ too much in size to be balanced; look for stiffness, density and lengths beyond those of cloth"
     )]
     Apart,
 }
@@ -116,7 +116,7 @@ pub enum StaticsError {
     /// The cloth still moves after all steps.
     #[error("{}", unrest(state, panel, *wanted))]
     NotAtRest {
-        /// The speed that was asked for, m/s.
+        /// The speed that was requested, m/s.
         wanted: f64,
         /// The panel with the greatest residual force.
         panel: String,

@@ -11,7 +11,7 @@ pub fn unrest(state: &Equilibrium, panel: &str, wanted: f64) -> String {
     let mm = |metres: f64| metres * 1e3;
     let how = match outcome.gained {
         Some(gained) => format!(
-            "let go for a sixtieth of a second it would gain {:.3} mm/s, {:.3} mm/s are allowed",
+            "released for a sixtieth of a second it would gain {:.3} mm/s, {:.3} mm/s are allowed",
             mm(gained),
             mm(wanted)
         ),

@@ -110,12 +110,12 @@ pub enum StartError {
         seams: Vec<String>,
         /// Mean distance of the pairs, m.
         apart: f64,
-        /// The same with one side turned round, m.
+        /// The same with one side reversed, m.
         turned: f64,
     },
     /// A seam between pins at two places.
     #[error(
-        "seam '{seam}' sews together vertices that are pinned {:.1} mm apart; pin them at one place, or let one of them go",
+        "seam '{seam}' sews together vertices that are pinned {:.1} mm apart; pin them at one place, or unpin one of them",
         1e3 * gap
     )]
     PinnedApart {

@@ -141,7 +141,7 @@ fn contacts_of_smooth_cloth_are_those_of_brute_force() {
 fn two_parallel_sheets_push_each_other_straight_apart() {
     let cloth = both(sheet(4, |_, _| 0.0), sheet(4, |_, _| 0.002));
     let found = contacts(&scheme::<Aabb>(), &cloth, 0.003);
-    // Every vertex lies over one of the other sheet: one contact a pair, whatever the triangles.
+    // Every vertex lies over one of the other sheet: one contact per pair, whatever the triangles.
     assert_eq!(found.len(), 25);
     for c in &found {
         assert!((c.distance - 0.002).abs() < 1e-15 && c.normal.z.abs() == 1.0);

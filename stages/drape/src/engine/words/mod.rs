@@ -1,4 +1,4 @@
-//! What the engine refuses or does not reach, in the words of people who have a photo, a pattern or
+//! Messages for what the engine refuses or does not reach, for users who have a photo, a pattern or
 //! a scene.
 //!
 //! The main sentence names pieces, seams and places; the help is what this user can type or do;
@@ -19,7 +19,7 @@ use toile_core::{ErrorCode, StageError};
 pub(crate) use motion::Motions;
 pub(crate) use rest::{Rests, crossing};
 
-/// To whom and of what is told.
+/// What messages refer to: the garment, the body and the stage.
 #[derive(Clone, Copy)]
 pub(crate) struct MessageContext<'a> {
     /// Knows which panel a triangle belongs to.

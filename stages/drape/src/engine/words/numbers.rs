@@ -14,7 +14,7 @@ const AGAIN: &str =
     "mesh the piece again with another edge length, or merge points that lie on each other in the file";
 
 impl MessageContext<'_> {
-    /// A fault of numbers; triangles and points are told by their panel.
+    /// A fault of numbers; triangles and points are named by their panel.
     pub(super) fn numbers(&self, error: &ClothError) -> StageError {
         let told = cloth_error(error);
         let (message, help) = match error {

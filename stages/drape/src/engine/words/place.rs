@@ -4,7 +4,7 @@ use super::MessageContext;
 use nalgebra::Vector3;
 use toile_core::artifact::Point3;
 
-/// Nearer than this to a landmark, a place is told by it, metres.
+/// A place nearer than this to a landmark is described by that landmark, metres.
 const AT: f64 = 0.12;
 
 /// Nearer than this to the middle, a place is neither left nor right, before nor behind, metres.

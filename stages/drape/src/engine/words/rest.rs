@@ -1,4 +1,4 @@
-//! Why a garment does not come to rest.
+//! Messages about a garment that does not come to rest.
 
 use super::numbers::BEYOND_CLOTH;
 use super::{MessageContext, both, length, panel, seam, turn_round};
@@ -97,7 +97,7 @@ impl MessageContext<'_> {
         Self::error(code, message, error).hint(help)
     }
 
-    /// What is told of a garment that still moves, without the remedy; `of` is the panel with the
+    /// The message for a garment that still moves, without the remedy; `of` is the panel with the
     /// greatest force left over.
     fn unrest(&self, state: &Equilibrium, of: &str) -> String {
         let cause = match state.unbalanced.meets {
@@ -129,7 +129,7 @@ impl MessageContext<'_> {
     }
 }
 
-/// Cloth that passes through cloth in the end.
+/// The message for cloth that passes through cloth in the end.
 pub(crate) fn crossing(pairs: usize) -> String {
     match pairs {
         1 => "cloth passes through cloth in one place".to_owned(),
@@ -152,6 +152,6 @@ fn no_step(why: Unsolvable) -> (&'static str, &'static str) {
         Unsolvable::Flat => {
             ("has no cloth around it where it starts", "place the piece as large as it is cut")
         }
-        Unsolvable::Apart => ("feels forces that are too far apart to be balanced", BEYOND_CLOTH),
+        Unsolvable::Apart => ("has forces that differ too much in size to be balanced", BEYOND_CLOTH),
     }
 }

@@ -70,7 +70,7 @@ impl MessageContext<'_> {
             }
             StartError::PinnedApart { seam: of, gap } => (
                 format!("{} joins points that are pinned {} apart", seam(of), length(*gap)),
-                "pin them at one place, or let one of them go".into(),
+                "pin them at one place, or unpin one of them".into(),
             ),
         };
         Self::error(ErrorCode::InvalidInput, message, error).hint(help)

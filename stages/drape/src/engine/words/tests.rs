@@ -115,7 +115,7 @@ fn starts() -> Vec<(StartError, &'static str)> {
         ),
         (
             StartError::PinnedApart { seam: "rail".into(), gap: 0.003 },
-            "the seam 'rail' joins points that are pinned 3.0 mm apart\npin them at one place, or let one of them go",
+            "the seam 'rail' joins points that are pinned 3.0 mm apart\npin them at one place, or unpin one of them",
         ),
     ]
 }
@@ -212,7 +212,7 @@ fn statics() -> Vec<(StaticsError, &'static str)> {
         ),
         (
             stuck(Unsolvable::Apart),
-            "a point of 'front' feels forces that are too far apart to be balanced\n\
+            "a point of 'front' has forces that differ too much in size to be balanced\n\
              look at the fabric: its weight, stretch and bending, or the lengths of the pieces, are beyond those of cloth (see the units of \
              its file)",
         ),

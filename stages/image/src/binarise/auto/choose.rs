@@ -11,17 +11,17 @@ use toile_core::prelude::*;
 
 /// A larger mask has this share of the best one's confidence.
 const ALSO: f64 = 0.6;
-/// It holds this share of the best one.
+/// A larger mask must contain this share of the best one.
 const HELD: f64 = 0.97;
-/// It is so many times as large.
+/// A larger mask must be at least so many times as large.
 const MORE: f64 = 1.15;
 
-/// The mask that is taken, with what speaks for it.
+/// The mask that is taken, with the evidence for it.
 #[derive(Debug)]
 pub(super) struct ChosenMask {
     /// The mask at the small size, with the colours of both sides.
     pub coarse: Coarse,
-    /// What speaks for it.
+    /// The evidence for it.
     pub evidence: MaskEvidence,
     /// The area of what lies around it, as a multiple of its own, where it may be a print.
     pub larger: Option<f64>,
@@ -66,8 +66,8 @@ pub(super) fn choose(
     Ok(Some(ChosenMask { coarse, evidence: all[best], larger }))
 }
 
-/// The mask that holds the best one and much more, where evidence speaks for it too: methods agree
-/// about one part of a garment of two colours as well as about all of it.
+/// The mask that contains the best one and much more, if there is evidence for it too: methods
+/// agree about one part of a garment of two colours as well as about all of it.
 fn whole(found: &[MethodMask], all: &[MaskEvidence], best: usize) -> usize {
     let count = |i: usize| found[i].mask.iter().filter(|on| **on).count() as f64;
     let held =

@@ -15,7 +15,7 @@ use nalgebra::Matrix3;
 
 /// Added to the scatter, squared Lab units: noise of a camera.
 const NOISE: f64 = 4.0;
-/// Levels to a unit of the axis, which is scaled so that both means lie 100 levels apart.
+/// Levels per unit of the axis, which is scaled so that both means lie 100 levels apart.
 const LEVELS: f64 = 100.0;
 
 /// The garment's side of the split; `None` where rim or middle are empty or do not differ.

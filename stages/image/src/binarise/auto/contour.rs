@@ -1,11 +1,11 @@
 //! How much of a mask's contour lies where the photo has an edge.
 //!
-//! At each pixel of the contour the colours a little inside are held against those a little
+//! At each pixel of the contour the colours a little inside are compared with those a little
 //! outside, along the normal. There is an edge where they differ by more than is just visible and
 //! by more than either side varies by itself. A bite out of a hem, a cut corner, a boundary in the
 //! middle of cloth have none.
 //!
-//! Cost: eight looks a pixel of the contour.
+//! Cost: eight lookups per pixel of the contour.
 
 use super::super::small::{Lab, SmallPhoto};
 

@@ -10,7 +10,7 @@ use toile_core::prelude::*;
 
 /// What the methods disagree about, sRGB.
 const RED: [f64; 3] = [255.0, 0.0, 0.0];
-/// How much of it covers the photo where half of them take a pixel for garment.
+/// Opacity of the doubt's colour over the photo where half of the methods take a pixel for garment.
 const COVER: f64 = 0.6;
 
 /// The refusal of a mask that leaves doubt: what was seen, and one thing to try.

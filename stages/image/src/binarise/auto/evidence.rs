@@ -1,7 +1,6 @@
-//! What speaks for a mask: other methods that find the same, and what a garment laid flat looks
-//! like.
+//! Evidence for a mask: other methods that find the same, and what a garment laid flat looks like.
 //!
-//! Each kind of evidence is brought to 0 to 1 between the value that speaks against a mask and the
+//! Each kind of evidence is scaled to 0 to 1, from the value that is evidence against a mask to the
 //! one that leaves no doubt; the confidence is their product, so that no kind makes up for another.
 //! Methods that agree to 0.96 differ by the width of a contour; a garment laid flat is its own
 //! mirror image to 0.85 with a fold or a sleeve aside, and less than 0.65 is half a garment; a
@@ -12,9 +11,9 @@ use super::super::small::SmallPhoto;
 use super::contour::support;
 use super::symmetry::symmetry;
 
-/// Agreement that speaks against a mask, and that leaves no doubt.
+/// Agreement that is evidence against a mask, and agreement that leaves no doubt.
 const AGREE: [f64; 2] = [0.88, 0.96];
-/// The weight of the method that agrees best, beside the second best: two that agree to a hair
+/// The weight of the method that agrees best, beside the second best: two that agree almost exactly
 /// while all others miss a stripe are right more often than three that agree roughly.
 const FIRST: f64 = 0.7;
 /// Mirror images alike.
@@ -22,7 +21,7 @@ const ALIKE: [f64; 2] = [0.65, 0.85];
 /// Share of the contour on edges of the photo.
 const ON_EDGES: [f64; 2] = [0.7, 0.9];
 
-/// What speaks for a mask.
+/// The evidence for a mask.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MaskEvidence {
     /// Weighted intersection over union with the two methods that agree best, 0 to 1.

@@ -2,7 +2,7 @@
 
 use image::GrayImage;
 
-/// A picture of `w` x `h` pixels from one flag a pixel.
+/// A picture of `w` x `h` pixels from one flag per pixel.
 pub(super) fn picture(mask: &[bool], w: usize, h: usize) -> GrayImage {
     let mut out = GrayImage::new(w as u32, h as u32);
     out.iter_mut().zip(mask).for_each(|(v, on)| *v = if *on { 255 } else { 0 });

@@ -9,11 +9,11 @@
 //! are put back (`thin`), wedges of ground between sleeve and side are opened (`wedge`), its
 //! boundary is cut at twice the size, inlets of ground between legs are opened up to their tips, it
 //! is set at the photo's own size, and a strip of ground between hem and frame is found (`frame`).
-//! The product of the evidence is the confidence. Below the least that is asked for, and where the
+//! The product of the evidence is the confidence. Below the least that is requested, and where the
 //! mask looks like a print on something larger (`larger`), the photo is refused with a picture of
 //! the doubt (`doubt`).
 //!
-//! Agreement of independent methods tells far more than any method knows of itself.
+//! Agreement of independent methods is far better evidence than any one method's own confidence.
 //!
 //! Cost: 0.2 to 0.5 s for any photo. Limits: where all methods take the same part of a garment for
 //! ground and the photo has an edge there (sleeves of the ground's colour on a body of another),
@@ -102,7 +102,8 @@ const AROUND: f64 = 0.04;
 impl Auto {
     /// The mask of the garment.
     pub fn run(&self, photo: &Photo, given: Option<&Mask>, cx: &Context) -> Result<Mask, StageError> {
-        // How far it may touch the frame is told here, with what goes on past it.
+        // `mask_of` refuses a garment that touches the frame too far, and says what goes on past
+        // it; the binarisers need not.
         let settings = CleanUp { open: 0, close: 0, holes: self.holes, touch: f64::INFINITY, next: NEXT };
         let mask = mask_of(photo, settings, cx, || self.one_of_all(photo, given, cx))?;
         tell_beside(photo, &mask, None, || things(photo), cx);
@@ -236,7 +237,7 @@ impl Auto {
 fn not_held(photo: &Photo, (x, y): PhotoPlace, cx: &Context) -> StageError {
     let set = format!("--set 'stages.{}.rect={{\"{}\": ((0.1, 0.1), (0.5, 0.9))}}'", cx.stage(), cx.entry());
     StageError::invalid(format!(
-        "what was found in \"{}\" does not hold the place ({x}, {y}) that is marked",
+        "what was found in \"{}\" does not contain the marked place ({x}, {y})",
         photo.file
     ))
     .hint(format!(

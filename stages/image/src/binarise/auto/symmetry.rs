@@ -68,7 +68,7 @@ pub(super) fn symmetry(mask: &[bool], w: usize) -> Option<Symmetry> {
     best(near.map(|(k, s)| try_at(coarse.angle + k * PI / AXES as f64 / 3.0, s * reach)).collect())
 }
 
-/// Whether the mask holds a place; nothing is held past the frame.
+/// Whether the mask contains a place; it contains none beyond the frame.
 pub(super) fn at(mask: &[bool], w: usize, h: usize, [x, y]: [f64; 2]) -> bool {
     let (x, y) = (x.round(), y.round());
     x >= 0.0 && y >= 0.0 && x < w as f64 && y < h as f64 && mask[y as usize * w + x as usize]

@@ -316,7 +316,7 @@ fn of_two_things_the_larger_is_taken_and_the_other_is_told() {
     );
     let marks = format!("(garment: {{\"{}\": [(0.80, 0.50)]}})'", cx.entry());
     assert!(told[0].ends_with(&marks), "{told:?}");
-    // Of a mirror image it was told of its photo.
+    // A mirror image gives no warning: its photo gave it.
     let mirrored = Photo { mirrored: true, ..two_things() };
     Auto::default().run(&mirrored, None, &cx).unwrap();
     assert!(cx.take_remarks().warnings.is_empty());
@@ -339,7 +339,7 @@ fn a_mark_on_the_ground_is_refused() {
     let e = stage.run(&two_things(), None, &cx).unwrap_err();
     assert_eq!(
         e.to_string(),
-        "what was found in \"front.jpg\" does not hold the place (0.58, 0.9) that is marked"
+        "what was found in \"front.jpg\" does not contain the marked place (0.58, 0.9)"
     );
     let set = format!("--set 'stages.{}.rect={{\"{}\": ((0.1, 0.1), (0.5, 0.9))}}'", cx.stage(), cx.entry());
     assert!(e.hint.unwrap().ends_with(&set));

@@ -43,8 +43,8 @@ pub(super) fn without_lone_parts(mask: &[bool], raw: &[bool], w: usize) -> Vec<b
     kept
 }
 
-/// The mask with thin parts of what was found before it was cleaned, where they come in pairs:
-/// straps that a clean-up took off.
+/// The mask with thin parts of the mask before clean-up, where they come in pairs: straps that the
+/// clean-up removed.
 pub(super) fn with_pairs(mask: &[bool], raw: &[bool], w: usize) -> Vec<bool> {
     let h = mask.len() / w.max(1);
     let Some(axis) = symmetry(mask, w) else { return mask.to_vec() };

@@ -20,7 +20,7 @@ use toile_core::prelude::*;
 
 /// A thing covers at least this share of the photo.
 const LEAST: f64 = 0.02;
-/// And has an edge along this share of its outline.
+/// A thing has an edge of the photo along at least this share of its outline.
 const OUTLINE: f64 = 0.8;
 
 /// The things of a photo, from the largest to the smallest; those that are small beside the largest

@@ -1,13 +1,13 @@
 //! Which side a random walk reaches first: the frame's rim or the frame's middle.
 //!
-//! A walker steps from pixel to pixel, less readily across a step of colour (Grady, Random walks
-//! for image segmentation, IEEE PAMI 28(11), 2006). The chance that it comes to the middle before
-//! it comes to the rim is the solution of a Laplace equation on the grid, found by conjugate
-//! gradients. It knows edges alone and no colour of either side: a weak edge that goes all around
-//! is enough, and a print, which is as unlike its cloth as cloth and ground are, does not part
-//! them.
+//! The walk goes from pixel to pixel, with a lower probability across a step of colour (Grady,
+//! Random walks for image segmentation, IEEE PAMI 28(11), 2006). The chance that it comes to the
+//! middle before it comes to the rim is the solution of a Laplace equation on the grid, found by
+//! conjugate gradients. It knows edges alone and no colour of either side: a weak edge that goes
+//! all around is enough, and a print, which is as unlike its cloth as cloth and ground are, does
+//! not part them.
 //!
-//! Cost: some 100 rounds of ten operations a pixel; 20 ms at 200 pixels. Limits: on a patterned
+//! Cost: some 100 rounds of ten operations per pixel; 20 ms at 200 pixels. Limits: on a patterned
 //! ground the edges of the pattern hold the walker up, and the boundary lies at any of them.
 
 use super::super::background::rim_width;

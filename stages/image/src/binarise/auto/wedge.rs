@@ -69,7 +69,7 @@ pub(super) fn with_inlets(mask: &[bool], raw: &[bool], w: usize) -> (Vec<bool>, 
     (open, ends)
 }
 
-/// Follows an inlet from where it ends, at `end`, to its tip in the photo: what hangs together with
+/// Follows an inlet from where it ends, at `end`, to its tip in the photo: what is connected with
 /// its ground, and whose colour is nearer to that of the ground than of the garment there, where it
 /// is long.
 pub(super) fn follow(mask: &mut GrayImage, photo: &Photo, end: [u32; 2]) {

@@ -10,7 +10,7 @@ use toile_core::prelude::*;
 
 /// Strips along open edges and turned copies of the cloth, as this program writes them.
 const BESIDE: [(&str, &str); 2] = [(" edge", "strips along its edges"), (" wrong side", "its wrong side")];
-/// Another thing is worth a question if it is so large a share of the largest.
+/// Warns about another thing if it is at least this share of the largest.
 const LARGE: f64 = 0.5;
 
 /// Takes the cloth of a file that this program wrote.
@@ -76,8 +76,8 @@ pub(in crate::flat) fn leave_out(raw: &mut RawMesh, names: &[String], file: &str
     Ok(())
 }
 
-/// Refuses cloth with a thickness, drops what is closed beside open cloth, and asks about what else
-/// is no garment.
+/// Refuses cloth with a thickness, drops what is closed beside open cloth, and warns about what
+/// else may be no garment.
 pub(in crate::flat) fn open_cloth(mended: &mut Mended, file: &str, cx: &Context) -> Result<(), StageError> {
     let all = wholes(&mended.mesh);
     let thick: Vec<(&Whole, f64)> = all.iter().filter_map(|w| Some((w, w.thickness()?))).collect();

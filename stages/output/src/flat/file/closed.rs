@@ -1,26 +1,26 @@
 //! Parts of a mesh that are closed all around: bodies, buttons, and cloth that was exported with
 //! its thickness.
 //!
-//! Method: a part hangs together by its joined vertices; it is closed where its triangles run along
-//! each edge as often one way as the other. The volume of a closed part (divergence theorem) over
-//! half of its area is the mean distance between its two sides: some millimetres for cloth with a
-//! thickness, centimetres for a body. Cost: a sort of the edges. Limit: a part whose triangles face
-//! at random counts as open.
+//! Method: triangles that share joined vertices form one part; it is closed where its triangles run
+//! along each edge as often one way as the other. The volume of a closed part (divergence theorem)
+//! over half of its area is the mean distance between its two sides: some millimetres for cloth
+//! with a thickness, centimetres for a body. Cost: a sort of the edges. Limit: a part whose
+//! triangles face at random counts as open.
 
 use super::raw::RawMesh;
 use toile_geometry::components::{groups, links};
 
 /// Cloth is no thicker than this, metres.
 const THICKEST: f64 = 0.01;
-/// And so many times as large as it is thick.
+/// Cloth is at least so many times as large as it is thick.
 const SLENDER: f64 = 20.0;
 
-/// What hangs together in a mesh.
+/// A connected component of a mesh.
 #[derive(Debug, Clone)]
 pub(in crate::flat) struct Whole {
     /// Its triangles.
     pub(in crate::flat) triangles: Vec<u32>,
-    /// What most of it is called; may be empty.
+    /// The name of most of its triangles; may be empty.
     pub(in crate::flat) name: String,
     /// The diagonal of its box, metres.
     pub(in crate::flat) size: f64,
@@ -39,7 +39,7 @@ impl Whole {
     }
 }
 
-/// What hangs together, in the order of the first triangles.
+/// The connected components, in the order of their first triangles.
 pub(in crate::flat) fn wholes(mesh: &RawMesh) -> Vec<Whole> {
     let (of, count) = groups(mesh.positions.len(), links(&mesh.triangles));
     let mut triangles: Vec<Vec<u32>> = vec![Vec::new(); count];

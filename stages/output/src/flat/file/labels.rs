@@ -23,12 +23,12 @@ pub enum PiecesBy {
     /// Edges that are marked as lines (`l`; in a GLB line primitives). A line may end inside a
     /// piece: a dart.
     Seams,
-    /// What hangs together by the file's own vertices.
+    /// Components connected by the file's own vertices.
     Parts,
 }
 
 impl PiecesBy {
-    /// What tells the pieces, in words.
+    /// What separates the pieces, in words.
     pub(in crate::flat) fn words(self) -> &'static str {
         match self {
             PiecesBy::Auto | PiecesBy::Parts => "the parts of the mesh",
@@ -43,11 +43,11 @@ impl PiecesBy {
 impl PiecesBy {
     /// What is meant for this mesh.
     ///
-    /// Errors: what is asked for does not stand in the file.
+    /// Errors: what is requested does not stand in the file.
     pub(in crate::flat) fn resolved(self, mended: &Mended) -> Result<Self, StageError> {
         let mesh = &mended.mesh;
         let missing = |what: &str, instead: &str| {
-            let e = StageError::invalid(format!("the file has no {what} to tell the pieces by"));
+            let e = StageError::invalid(format!("the file has no {what} to separate the pieces by"));
             Err(e.hint(format!("{instead}, or write another word for `pieces`, such as `Auto`")).at("pieces"))
         };
         let has_uv = mesh.corners.iter().flatten().all(|c| *c != NO_POINT);
@@ -126,8 +126,7 @@ fn key(t: &[u32; 3], k: usize) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Gives each side of these edges a label of its own; returns nothing for edges that there are none
-/// of.
+/// Gives each side of these edges a label of its own; returns none where the mesh has no such edge.
 pub(in crate::flat) fn cut_along(triangles: &[[u32; 3]], edges: &[[u32; 2]], labels: &mut [[u32; 2]]) {
     let mut marked: Vec<[u32; 2]> = edges.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
     marked.sort_unstable();

@@ -1,8 +1,8 @@
 //! The meshes of a 3D file as they stand there, for what judges them: nothing is mended.
 //!
-//! Of a file of this program the body is told by its name; strips along edges and turned copies of
-//! the cloth are left out. Of other files what is closed all around beside open cloth is no cloth:
-//! the largest such part is the body where it is as large as one.
+//! Of a file of this program the body is recognised by its name; strips along edges and turned
+//! copies of the cloth are left out. Of other files what is closed all around beside open cloth is
+//! no cloth: the largest such part is the body where it is as large as one.
 
 use super::chosen::cloth_of_ours;
 use super::closed::{Whole, wholes};
@@ -101,7 +101,7 @@ fn guessed(raw: &RawMesh, file: &str, notes: &mut Vec<String>) -> Result<f64, St
     Ok(*unit)
 }
 
-/// Takes the body off a file of this program, and what stands beside the cloth.
+/// Removes from a file of this program the body and other meshes that are no cloth.
 fn own_body(raw: &mut RawMesh, file: &str, notes: &mut Vec<String>) -> Vec<[u32; 3]> {
     let is_body = |g: &u32| raw.group_names.get(*g as usize).is_some_and(|n| n == BODY);
     let has_cloth = raw.groups.iter().any(|g| !is_body(g));

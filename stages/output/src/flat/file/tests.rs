@@ -16,8 +16,8 @@ fn refused(file: &str, bytes: &[u8], rest: &str) -> [String; 2] {
     [e.message, e.hint.unwrap_or_default()]
 }
 
-/// A tube of cloth, 30 cm across and 60 cm high, on an OBJ's vertices from `first` on; lying where
-/// told so.
+/// A tube of cloth, 30 cm across and 60 cm high, on an OBJ's vertices from `first` on; lying down
+/// if `is_lying`.
 fn tube(name: &str, first: usize, radius: f64, is_lying: bool) -> String {
     use std::fmt::Write;
     let around = 24;

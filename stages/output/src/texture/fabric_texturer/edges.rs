@@ -24,7 +24,7 @@ pub(super) fn finishes(
     let mut all = vec![Vec::new(); garment.panels.len()];
     let Some((first, ..)) = wanted.first() else { return Ok(all) };
     let Some(panels) = panels else {
-        let text = "no panels stand before it, whose edges could be looked up";
+        let text = "no stage before it gives panels, whose edges could be looked up";
         return Err(StageError::invalid(text)
             .hint("let a mesher stand before it, or leave `ribs` and `stitches` out")
             .at(field(*first)));

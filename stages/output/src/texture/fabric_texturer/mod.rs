@@ -133,7 +133,7 @@ impl FabricTexturer {
                 kinds.push(shows);
             }
         }
-        // Only the fabrics tell whether `Auto` finds denim.
+        // Whether `Auto` finds denim depends on the fabrics.
         let has_denim = kinds.contains(&FabricTexture::Denim);
         if self.texture == FabricTexture::Auto && self.second.is_some() && !has_denim {
             return Err(idle("second", "`texture: Auto`, which found no denim", OF_SECOND));
@@ -215,7 +215,7 @@ impl FabricTexturer {
         Ok(ClothPictures { tiles, sheets })
     }
 
-    /// The panels in their cloth: its pictures, then their normal maps where they are asked for.
+    /// The panels in their cloth: its pictures, then their normal maps where they are requested.
     fn dressed(&self, dress: &Dress<'_>, pictures: ClothPictures, cx: &Context) -> Result<Model, StageError> {
         let garment = dress.garment;
         let mut model = Model::default();

@@ -164,6 +164,6 @@ fn edges_that_have_two_finishes_or_no_panels_are_refused() {
     );
     let ribbed = FabricTexturer { ribs: widths(&[("neck", 20.0)]), ..texturer(FabricTexture::Plain) };
     let e = ribbed.run(&dress::garment(), None, None, &Context::quiet()).unwrap_err();
-    assert_eq!(e.message, "no panels stand before it, whose edges could be looked up");
+    assert_eq!(e.message, "no stage before it gives panels, whose edges could be looked up");
     assert_eq!(e.hint.unwrap(), "let a mesher stand before it, or leave `ribs` and `stitches` out");
 }

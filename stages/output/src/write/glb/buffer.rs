@@ -50,7 +50,7 @@ impl Buffer {
         self.accessor(accessor)
     }
 
-    /// Appends positions of 16 bits a coordinate, each row filled up to eight bytes; returns the
+    /// Appends positions of 16 bits per coordinate, each row padded to eight bytes; returns the
     /// accessor's index.
     pub(super) fn shorts(&mut self, rows: Vec<[i16; 3]>) -> usize {
         let row = |[x, y, z]: &[i16; 3]| [*x, *y, *z, 0];

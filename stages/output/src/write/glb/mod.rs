@@ -1,11 +1,12 @@
 //! `Glb`: the model as binary glTF 2.0 (Khronos, 2017; ISO/IEC 12113).
 //!
-//! One node and one mesh a panel (two where its wrong side looks unlike the right one), one buffer;
-//! textures lie in the same file. Positions, normals and texture coordinates are 32-bit floats (or
-//! whole numbers, [`grid`]), indices 16 or 32 bits. Of Khronos' extensions it uses, where they are
-//! needed, `KHR_materials_unlit` for *replace*, `KHR_materials_sheen`, `KHR_materials_variants` and
-//! `KHR_mesh_quantization`. Tangents of normal maps are written, so that every viewer reads the map
-//! in the same frame. Cost: the encoding of the textures. Limit: 4 GiB, the format's own.
+//! One node and one mesh per panel (two where its wrong side looks unlike the right one), one
+//! buffer; textures lie in the same file. Positions, normals and texture coordinates are 32-bit
+//! floats (or whole numbers, [`grid`]), indices 16 or 32 bits. Of Khronos' extensions it uses,
+//! where they are needed, `KHR_materials_unlit` for *replace*, `KHR_materials_sheen`,
+//! `KHR_materials_variants` and `KHR_mesh_quantization`. Tangents of normal maps are written, so
+//! that every viewer reads the map in the same frame. Cost: the encoding of the textures. Limit: 4
+//! GiB, the format's own.
 
 mod buffer;
 mod grid;
@@ -213,7 +214,7 @@ fn pack(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, StageError> {
     let total = 12 + 8 + json.len() + 8 + binary.len();
     let length = |n: usize| {
         let hint = "lower `size` of the texturer or make the mesh coarser";
-        u32::try_from(n).map_err(|_| StageError::invalid("the model passes glTF's 4 GiB").hint(hint))
+        u32::try_from(n).map_err(|_| StageError::invalid("the model exceeds glTF's 4 GiB").hint(hint))
     };
     let mut file = Vec::with_capacity(total);
     file.extend_from_slice(b"glTF");

@@ -57,7 +57,7 @@ pub fn flat(origin: &[u8]) -> Result<FlatPieces, String> {
         let kind =
             SeamKind::of(&s.kind, &s.figures).map_err(|e| damaged(format!("seam \"{}\": {e}", s.name)))?;
         if s.pairs.iter().flatten().any(|v| *v as usize >= count) {
-            return Err(damaged(format!("seam \"{}\" names a point that there is none of", s.name)));
+            return Err(damaged(format!("seam \"{}\" names a point that does not exist", s.name)));
         }
         seams.push(FlatSeam { name: s.name, kind, pairs: s.pairs });
     }
@@ -90,11 +90,11 @@ mod tests {
         let says = |seams: &str| read(seams).unwrap_err();
         assert_eq!(
             says(r#","seams":[{"name":"side","kind":"glued","figures":[],"pairs":[]}]"#),
-            "\"origin.json\" is damaged: seam \"side\": `kind` is \"glued\", which is none of its words"
+            "\"origin.json\" is damaged: seam \"side\": `kind` is \"glued\", which is not one of its values"
         );
         assert_eq!(
             says(r#","seams":[{"name":"side","kind":"matched","figures":[],"pairs":[[0,3]]}]"#),
-            "\"origin.json\" is damaged: seam \"side\" names a point that there is none of"
+            "\"origin.json\" is damaged: seam \"side\" names a point that does not exist"
         );
     }
 }

@@ -77,7 +77,7 @@ pub(super) struct PanelOrigin {
     pub(super) photo: Option<PhotoOrigin>,
     /// Flat positions, metres.
     pub(super) positions: Vec<[f64; 2]>,
-    /// Pixels in the photo, one a vertex, or none.
+    /// Pixels in the photo, one per vertex, or none.
     pub(super) pixels: Vec<[f64; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// Named edges of the outline as chains of flat places, metres: the garment's mesh may be a

@@ -8,7 +8,7 @@ pub(super) type MeshGroup = (String, usize);
 
 /// The groups of a file of that extension that hold triangles.
 ///
-/// Errors: why they cannot be told.
+/// Errors: why they are not known.
 pub(super) fn groups(bytes: &[u8], extension: &str) -> Result<Vec<MeshGroup>, String> {
     let groups = match extension {
         "glb" => glb(bytes).ok_or("it is not a GLB file that toile wrote")?,

@@ -32,7 +32,7 @@ impl SeamAllowances {
     }
 }
 
-/// The file and the file of its seams; what it does not hold is told.
+/// The file and the file of its seams; what the format cannot hold is reported.
 pub(crate) fn files(
     name: &str,
     ending: &str,

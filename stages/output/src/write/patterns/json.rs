@@ -8,7 +8,7 @@ use toile_pattern_files::garment_code;
 /// Writes the pattern as a `_specification.json`, which GarmentCode and `GarmentCode()` read.
 ///
 /// What the format cannot hold (inner lines, notches, seams of more than two sides and kinds of
-/// seams) is told; all seams stand in a `.seams.ron` beside it.
+/// seams) is reported; all seams are in a `.seams.ron` beside it.
 #[stage(
     role = Writer,
     source = "pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023)",

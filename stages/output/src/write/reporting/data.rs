@@ -34,11 +34,11 @@ const MOST_NOTES: usize = 24;
 #[derive(Debug, Serialize)]
 pub(crate) struct ReportPage {
     title: String,
-    /// The named quality; empty where nobody asked for one.
+    /// The named quality; empty where none was requested.
     quality: String,
     version: &'static str,
     total: String,
-    /// Why the run ended early; none of one that came to its end.
+    /// Why the run ended early; none if it came to its end.
     failure: Option<EarlyEnd>,
     verdict: ResultVerdict,
     warnings: Vec<StageRemark>,
@@ -63,9 +63,9 @@ pub(crate) struct ReportPage {
 struct EarlyEnd {
     stage: String,
     message: String,
-    /// Empty where nobody knows what may help.
+    /// Empty where no remedy is known.
     hint: String,
-    /// What lies behind it, for who asks; empty where there is no more to tell.
+    /// Details behind the message; empty where there are none.
     detail: String,
 }
 
@@ -91,7 +91,7 @@ struct StageSection {
     role: &'static str,
     params: String,
     wall: String,
-    /// What was expected before the run; empty where nobody asked.
+    /// What was expected before the run; empty where no prediction was requested.
     expected: String,
     /// Per cent of the longest stage.
     share: String,

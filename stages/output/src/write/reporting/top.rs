@@ -14,7 +14,7 @@ pub(crate) struct ResultVerdict {
     pub sentence: String,
 }
 
-/// What a stage told.
+/// Notes and warnings of a stage.
 #[derive(Debug, Serialize, PartialEq, Eq)]
 pub(crate) struct StageRemark {
     pub stage: String,

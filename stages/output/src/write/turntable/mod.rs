@@ -4,7 +4,7 @@
 //! pixel of the nearest views each place is (view interpolation: Chen, Williams 1993; with a mesh
 //! in between: Buehler and others 2001), or moves the pixels of the nearest views along the flow
 //! that block matching finds between them (`flow`). What the page holds is set down in
-//! `docs/reference/turntable.md`. Cost: one picture a view. Limits: 255 parts, 2040 px of width.
+//! `docs/reference/turntable.md`. Cost: one picture per view. Limits: 255 parts, 2040 px of width.
 
 mod flow;
 mod mesh;
@@ -226,7 +226,7 @@ fn by_sheet<T: Send>(
     views.par_chunks(PER_SHEET).zip(spans.par_chunks(PER_SHEET)).map(one).collect()
 }
 
-/// A panorama, brought down to what the page shows of it.
+/// A panorama, reduced to what the page shows of it.
 fn read_panorama(file: &str, cx: &Context) -> Result<RgbImage, StageError> {
     let at = |e: StageError| e.at("panorama");
     let picture = cx.read(file).and_then(|bytes| decode(&bytes, file)).map_err(at)?.pixels;

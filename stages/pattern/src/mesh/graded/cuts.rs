@@ -1,11 +1,11 @@
 //! How the stretches of all panels are cut, the two sides of a seam alike.
 //!
 //! Method: sides that are sewn together are one *tie*: along it, by share of the length, edges are
-//! as long as the panel with the shorter ones allows. What one panel asks of another so goes into
-//! the other's field, grows from there, and may reach another seam; this is repeated until nothing
-//! changes. A tie is then cut into parts of equal weight, the integral of one over the length of
-//! its edges, once for all its sides. Cost: samples times rounds. Limits: seams of edges that no
-//! panel has are left to the stage that sews.
+//! as long as the panel with the shorter ones allows. So the edge length that one panel needs
+//! enters the other panel's field, spreads from there, and may reach another seam; this is repeated
+//! until nothing changes. A tie is then cut into parts of equal weight, the integral of one over
+//! the length of its edges, once for all its sides. Cost: samples times rounds. Limits: seams of
+//! edges that no panel has are left to the stage that sews.
 
 use super::super::divide::Cuts;
 use super::super::layout::Layout;
@@ -14,11 +14,12 @@ use super::field::SizeField;
 use toile_core::artifact::{CHORD_TOLERANCE, EdgeRef, SewingPlan};
 use toile_core::{Context, StageError};
 
-/// Rounds of agreement at most: a seam's fine end reaches its neighbours', and theirs.
+/// Greatest number of rounds: in each, short edges at a seam shorten those of the neighbouring
+/// panel.
 const ROUNDS: usize = 8;
 /// A size that falls by less than this share is as it was.
 const SAME: f64 = 1e-3;
-/// Samples of a tie to an edge of the shortest length, and at most.
+/// Samples of a tie for each edge of the shortest length, and the most samples of one tie.
 const SAMPLES: (f64, f64) = (2.0, 1e5);
 /// A part is never shorter than this share of the longest edge for the sake of the curve.
 const LEAST_SHARE: f64 = 1.0 / 8.0;
@@ -63,7 +64,7 @@ impl Sized<'_> {
     }
 }
 
-/// The cuts of every panel; fields are lowered to what the panels ask of each other.
+/// The cuts of every panel; fields are lowered to the lengths that the panels need of each other.
 pub(crate) fn agree(
     panels: &mut [Sized<'_>],
     plan: Option<&SewingPlan>,
@@ -160,7 +161,7 @@ fn length(panels: &[Sized<'_>], tie: &[CutSide]) -> f64 {
     lengths.fold(0.0, f64::max)
 }
 
-/// Edge lengths at equal steps along a tie, metres: the least that any side asks for.
+/// Edge lengths at equal steps along a tie, metres: the least that any side requires.
 fn profile(panels: &[Sized<'_>], tie: &[CutSide]) -> Vec<f64> {
     let (mut least, fine) = (Vec::new(), panels[tie[0].panel].field.range().fine);
     let n = (length(panels, tie) * SAMPLES.0 / fine).clamp(4.0, SAMPLES.1).ceil() as usize;

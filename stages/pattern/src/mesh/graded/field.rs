@@ -25,7 +25,7 @@ pub(crate) struct Range {
     pub fine: f64,
     /// The longest.
     pub edge: f64,
-    /// Growth of the length, metres a metre.
+    /// Growth of the length, metres per metre.
     pub grading: f64,
 }
 
@@ -114,8 +114,8 @@ impl SizeField {
         Point2::new(self.low.x + i as f64 * self.cell, self.low.y + j as f64 * self.cell)
     }
 
-    /// The raster for whoever asks which of its nodes lie inside an outline: origin, distance and
-    /// counts of nodes.
+    /// The raster, for callers that find which of its nodes lie inside an outline: origin, distance
+    /// and counts of nodes.
     pub(crate) fn raster(&self) -> (Point2, f64, usize, usize) {
         (self.low, self.cell, self.columns, self.rows)
     }

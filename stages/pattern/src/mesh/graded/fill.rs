@@ -3,8 +3,8 @@
 //! Method: the corners of a quadtree's cells stand inside; the constrained Delaunay triangulation
 //! of these and the outline's vertices is mended where angles fall short (see `refine`), and the
 //! diagonals of squares alternate. Angles are at least 26.6 degrees where a cell meets two of half
-//! its side, 45 among equal cells; along the outline the figure `least_angle` tells. Cost: n log n.
-//! Limits: segments are never split.
+//! its side, 45 among equal cells; along the outline the figure `least_angle` shows it. Cost: n log
+//! n. Limits: segments are never split.
 
 use super::super::assemble::Meshed;
 use super::super::divide::Division;

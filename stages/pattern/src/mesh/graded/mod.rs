@@ -131,7 +131,7 @@ impl GradedMesher {
     }
 }
 
-/// Works on all panels at once; of several faults the first panel's is told.
+/// Works on all panels at once; of several faults the first panel's is reported.
 fn each<T: Sync, R: Send>(
     cx: &Context,
     all: &[T],

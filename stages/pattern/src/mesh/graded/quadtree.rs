@@ -35,7 +35,7 @@ pub(crate) struct Quadtree {
 }
 
 impl Quadtree {
-    /// Over a box, cells as small as the field asks.
+    /// A quadtree over a box, with cells as small as the field requires.
     pub(crate) fn new((low, high): (Point2, Point2), field: &SizeField) -> Self {
         let (span, edge) = (high - low, field.range().edge);
         let count = |length: f64| ((length / edge - 1e-9).ceil() as i64).max(1);
@@ -160,9 +160,9 @@ impl Quadtree {
         }
     }
 
-    /// Which way the diagonal of a square of this lowest corner and side runs, so that diagonals
-    /// alternate like a chequer board; none for what is no cell. True from the lowest corner to the
-    /// highest.
+    /// The direction of the diagonal of the square with this lowest corner and side, so that
+    /// diagonals alternate like a chequer board: true from the lowest corner to the highest; none
+    /// where there is no such cell.
     pub(crate) fn rises(&self, corner: Point2, side: f64) -> Option<bool> {
         let level = (self.side.x / side).log2().round();
         if !(0.0..=MOST_CUTS as f64).contains(&level) {

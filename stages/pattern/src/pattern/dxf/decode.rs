@@ -2,8 +2,8 @@
 //!
 //! From release 2007 on (`$ACADVER` AC1021) a file is UTF-8, before that in the code page that
 //! `$DWGCODEPAGE` names. Files say what is not so: text that is UTF-8 is read as that where the
-//! code page has one byte a letter, and where none is named. What is neither is read as
-//! Windows-1252, which is told.
+//! code page has one byte per letter, and where none is named. What is neither is read as
+//! Windows-1252, with a warning.
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 use toile_core::Remarks;
@@ -13,7 +13,7 @@ const UNICODE: &str = "AC1021";
 /// The header stands within the first lines.
 const HEADER_LINES: usize = 4_000;
 
-/// The text of a file; how it was read is told where that is not plain.
+/// The text of a file, and a remark on how it was read where that is not certain.
 pub(super) fn text(bytes: &[u8], told: &mut Remarks) -> String {
     if bytes.is_ascii() {
         return String::from_utf8_lossy(bytes).into_owned();
@@ -28,11 +28,11 @@ pub(super) fn text(bytes: &[u8], told: &mut Remarks) -> String {
     }
     let (text, used, wrong) = named.unwrap_or(WINDOWS_1252).decode(bytes);
     match (&page, named, utf8) {
-        // What is no text of its code page, but UTF-8, is that.
+        // Text that is not valid in its code page, but is valid UTF-8, is read as UTF-8.
         (_, Some(_), Some(text)) if wrong => return text.to_owned(),
         (Some(page), Some(_), _) if wrong => told
             .warnings
-            .push(format!("some letters are none of the code page {page} that the file names: they are read as \u{fffd}")),
+            .push(format!("some letters are not in the code page {page} that the file names: they are read as \u{fffd}")),
         (Some(page), Some(_), _) => told.notes.push(format!("names are read in the file's code page, {page}")),
         (Some(page), None, _) => told.warnings.push(format!(
             "the file's code page, \"{page}\", is not known: names are read as {}; look whether they are right",

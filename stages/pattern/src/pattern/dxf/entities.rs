@@ -1,9 +1,9 @@
 //! The blocks of a DXF file with what is drawn in them, of the kinds that patterns use.
 //!
-//! Layers are told by their numbers (AAMA, ASTM D6673): 1 boundary, 4 notches (and 80 to 83), 6
-//! mirror line, 7 grain, 8 internal lines, 11 cut-outs, 13 drill holes, 14 sew line, 84 the
+//! Layers are identified by their numbers (AAMA, ASTM D6673): 1 boundary, 4 notches (and 80 to 83),
+//! 6 mirror line, 7 grain, 8 internal lines, 11 cut-outs, 13 drill holes, 14 sew line, 84 the
 //! boundary drawn finely. Lines are LINE, POLYLINE and LWPOLYLINE with their bulges, ARC, CIRCLE,
-//! ELLIPSE and SPLINE; what else is drawn is kept by its name, to be told.
+//! ELLIPSE and SPLINE; the names of all other entities are kept, to be reported.
 
 use super::damage::DxfDamage;
 use super::spline::Spline;

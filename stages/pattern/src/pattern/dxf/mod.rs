@@ -3,7 +3,7 @@
 //!
 //! A block is a piece in one size. [`tags`] and [`entities`] read the file, [`pieces`] makes pieces
 //! of blocks. DXF knows no seams: they come from a file beside it, or are proposed. Cost: some
-//! milliseconds a piece.
+//! milliseconds per piece.
 
 mod damage;
 mod decode;
@@ -27,10 +27,10 @@ use toile_core::prelude::*;
 
 /// Pieces of a garment.
 const MOST_PIECES: usize = 500;
-/// Layers that have a meaning for a piece, by the standards; what is drawn on others is told.
+/// Layers that have a meaning for a piece, by the standards; what is drawn on others is reported.
 const KNOWN: std::ops::RangeInclusive<i32> = 1..=15;
 const KNOWN_FINE: std::ops::RangeInclusive<i32> = 80..=87;
-/// Things left out of a file that are told one by one.
+/// Greatest number of things left out of a file that are reported one by one.
 const MOST_TOLD: usize = 6;
 
 /// Reads the pieces of a garment from a DXF of AAMA or ASTM, in one size.
@@ -208,7 +208,7 @@ fn size_of(
     Ok(chosen)
 }
 
-/// Tells the pieces that there are in other sizes alone.
+/// Reports the pieces that exist in other sizes only.
 fn other_sizes_alone(drawn: &[Drawn<'_>], chosen: &[&Drawn<'_>], size: &str, told: &mut Remarks) {
     let mut seen: BTreeSet<&str> = chosen.iter().map(|d| d.name.as_str()).collect();
     for d in drawn {
@@ -221,7 +221,7 @@ fn other_sizes_alone(drawn: &[Drawn<'_>], chosen: &[&Drawn<'_>], size: &str, tol
     }
 }
 
-/// Tells what is drawn and not read: in the pieces, and in blocks that are none.
+/// Reports what is drawn and not read: in the pieces, and in blocks that are no pieces.
 fn left_out(blocks: &[Block], outside: &Block, chosen: &[&Drawn<'_>], told: &mut Remarks) {
     let known = |layer: i32| KNOWN.contains(&layer) || KNOWN_FINE.contains(&layer);
     let mut out: Vec<String> = Vec::new();

@@ -85,7 +85,7 @@ struct NamedBlock<'a> {
 }
 
 impl NamedBlock<'_> {
-    /// A line in metres, without what is shorter than a hair is wide.
+    /// A line in metres, without segments that are too short.
     fn scaled(&self, stroke: &Stroke) -> Side {
         let to = |p: Point2| p * self.unit;
         let mut side = Side { name: String::new(), start: to(stroke.start), parts: Vec::new() };
@@ -204,7 +204,7 @@ impl NamedBlock<'_> {
         }
     }
 
-    /// Tells lines of the boundary's layer that are no part of it.
+    /// Reports lines on the boundary's layer that are no part of the boundary.
     fn left_out(&self, layer: i32, lines: impl Iterator<Item = usize>, told: &mut Remarks) {
         let lines: Vec<String> = lines.map(|line| line.to_string()).collect();
         if !lines.is_empty() {

@@ -43,7 +43,7 @@ pub(super) fn tags(bytes: &[u8], told: &mut Remarks) -> Result<Vec<Tag>, DxfDama
         }
         let line = i + 1;
         let Ok(number) = code.trim().parse::<i32>() else {
-            // What stands behind the end of the file is nobody's.
+            // Text after the EOF tag is ignored.
             let ended = out.last().is_some_and(|t: &Tag| t.code == 0 && t.value == "EOF");
             return if ended { Ok(out) } else { Err(DxfDamage::Code { value: short(code), line }) };
         };

@@ -94,8 +94,8 @@ fn tank() -> Dxf {
     d
 }
 
-/// The pieces and what is told of them, warnings first; of several faults the first. The unit is
-/// not looked at.
+/// The pieces and the remarks on them, warnings first; of several faults the first. The unit is not
+/// looked at.
 fn read(bytes: &[u8], size: &str) -> Result<(Vec<Piece>, Vec<String>), DxfDamage> {
     let mut told = Remarks::default();
     let pieces = pieces_of(bytes, size, DrawingUnit::Millimetres, &mut told);

@@ -1,8 +1,8 @@
 //! The length of the file's unit.
 //!
 //! A DXF of AAMA or ASTM says METRIC, which are millimetres, or ENGLISH, which are inches; else its
-//! header may say a unit (`$INSUNITS`). Where neither does, the unit is taken by which the largest
-//! piece is of a garment's size; that is told.
+//! header may say a unit (`$INSUNITS`). Where neither does, the unit is taken with which the
+//! largest piece has a garment's size; a remark says so.
 
 use super::super::unit::{By, DrawingUnit, Taken};
 use super::Drawn;

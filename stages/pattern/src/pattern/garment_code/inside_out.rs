@@ -2,9 +2,9 @@
 //!
 //! A back that was copied from its front and moved behind the wearer, without turning it, looks at
 //! the wearer, and every stitch of it runs side by side with the edge that it is sewn to. Both
-//! together do not happen by themselves: in 55 files of GarmentCode and its forerunner no panel is
-//! one of these. Such a panel keeps its place and is turned over, and its stitches run with it.
-//! Cost: stitches times panels.
+//! together do not happen by chance: in 55 files of GarmentCode and its forerunner no panel is one
+//! of these. Such a panel keeps its place and is turned over, and its stitches run with it. Cost:
+//! stitches times panels.
 
 use super::panel::{Made, mirrored};
 use super::stitch::{Stitch, leaning, shortest};
@@ -14,9 +14,9 @@ use toile_core::prelude::*;
 
 /// Edges whose directions in space agree by more than this cosine run clearly the same way.
 const CLEAR: f64 = 0.5;
-/// Shorter edges lie too freely to tell, metres.
+/// Shorter edges are placed too loosely to decide, metres.
 const SHORTEST: f64 = 0.05;
-/// Fewer stitches do not tell.
+/// Fewer stitches do not decide.
 const LEAST: usize = 2;
 /// A panel looks clearly at the wearer where the cosine to the way there is more.
 const INWARDS: f64 = 0.5;

@@ -50,7 +50,8 @@ impl Json {
         json.each_once("the file").map(|()| json)
     }
 
-    /// Refuses a field that stands twice in an object; panels of one name are told by the reader.
+    /// Refuses a field that stands twice in an object; panels of one name are reported by the
+    /// reader.
     fn each_once(&self, of: &str) -> Result<(), SpecificationDamage> {
         match self {
             Json::Object(fields) => {
@@ -94,7 +95,7 @@ impl Json {
 fn syntax(bytes: &[u8], e: &serde_json::Error) -> SpecificationDamage {
     let (line, column) = (e.line(), e.column());
     let row = bytes.split(|b| *b == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
-    // The fault may be told at the first letter of the word or behind it.
+    // The parser may report the fault at the first letter of the word or behind it.
     let near = &row[column.saturating_sub(4).min(row.len())..(column + 9).min(row.len())];
     let strange = ["NaN", "Infinity"].into_iter().find(|w| near.windows(w.len()).any(|x| x == w.as_bytes()));
     if let Some(word) = strange {

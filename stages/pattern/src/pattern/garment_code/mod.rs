@@ -3,7 +3,7 @@
 //!
 //! The format has no schema; pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023) is its
 //! specification. [`read`] takes the fields, [`units`] finds the scale, [`panel`] makes pieces,
-//! [`stitches`] seams; what is beyond repair is a [`damage`]. Cost: some milliseconds a panel.
+//! [`stitches`] seams; what is beyond repair is a [`damage`]. Cost: some milliseconds per panel.
 
 mod damage;
 mod inside_out;
@@ -33,8 +33,8 @@ use toile_core::prelude::*;
 /// Takes the place of photos, outlines and a style. Every panel becomes a piece as seen from
 /// outside the wearer; edges are called by the file's labels, or `edge_0`, `edge_1`, ... by their
 /// place in the file. Small damage is repaired where the intent is certain, and every repair is
-/// told: a loop open by a hair, a stitch that runs the wrong way or stands twice, units that cannot
-/// be. Other damage is refused by panel, edge and place, all of it at once.
+/// reported: a loop with a tiny gap, a stitch that runs the wrong way or is listed twice,
+/// impossible units. Other damage is refused by panel, edge and place, all of it at once.
 #[stage(
     role = Reader,
     version = 2,

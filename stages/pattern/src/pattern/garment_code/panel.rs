@@ -1,10 +1,10 @@
 //! A panel of the file as a piece of the pattern.
 //!
-//! Method: the edges are put in a loop by their vertices; a gap of a hair is closed; the loop
-//! becomes metres. A loop that runs clockwise is seen from inside the wearer: its x is mirrored and
-//! its pose accordingly, so that every piece is seen from outside. Rotation and translation are
-//! `Rz Ry Rx (x, y, 0) + translation`. Limits: edges must stand in the file in the order of the
-//! loop; some may run against it.
+//! Method: the edges are put in a loop by their vertices; a tiny gap is closed; the loop becomes
+//! metres. A loop that runs clockwise is seen from inside the wearer: its x is mirrored and its
+//! pose accordingly, so that every piece is seen from outside. Rotation and translation are `Rz Ry
+//! Rx (x, y, 0) + translation`. Limits: edges must stand in the file in the order of the loop; some
+//! may run against it.
 
 use super::damage::SpecificationDamage;
 use super::read::{RawCurve, RawEdge, RawPanel};
@@ -15,7 +15,7 @@ use toile_core::prelude::*;
 
 /// A gap between edges of up to this is closed, metres.
 const HAIR: f64 = 5e-3;
-/// If it is also no more than this share of both edges.
+/// Such a gap is closed only if it is at most this share of both edges.
 const HAIR_SHARE: f64 = 0.25;
 /// A shorter edge has no length, metres.
 const SPECK: f64 = 1e-4;
@@ -55,7 +55,7 @@ struct Link {
     end: Point2,
 }
 
-/// Makes the piece; `stitched` are the edges that stitches name. Repairs are told.
+/// Makes the piece; `stitched` are the edges that stitches name. Repairs are reported.
 ///
 /// Errors: all that is wrong with its edges; else that it crosses itself.
 pub(super) fn made(

@@ -110,7 +110,7 @@ fn kept<T>(read: Result<T, SpecificationDamage>, faults: &mut Vec<SpecificationD
 /// A panel that the file has.
 struct KnownPanel {
     name: String,
-    /// Its number among those without faults, and it; none where it has one.
+    /// The panel and its number among those without faults; none where it has a fault.
     sound: Option<(usize, RawPanel)>,
 }
 

@@ -23,14 +23,14 @@ use toile_core::prelude::*;
 
 /// Edges whose directions in space agree by more than this cosine run clearly the same way.
 const CLEAR: f64 = 0.5;
-/// Shorter edges lie too freely to tell, metres.
+/// Shorter edges are placed too loosely to decide, metres.
 const SHORTEST: f64 = 0.05;
 /// Stitches of one panel that run the wrong way, from which on the panel itself may be turned.
 const MANY: usize = 3;
 /// Mirror images of edges end this near to each other, metres.
 const NEAR: f64 = 0.01;
 
-/// The seams of the stitches. What is dropped or turned is told.
+/// The seams of the stitches. Dropped and turned stitches are reported.
 pub(super) fn seams(
     stitches: &[RawStitch],
     panels: &[RawPanel],
@@ -154,8 +154,8 @@ fn is_dart(s: &RawStitch, made: &[Made]) -> bool {
 
 /// For each stitch whether it certainly runs the wrong way.
 ///
-/// Errors: two mirror images that run in opposite ways, of which the placed edges do not tell the
-/// wrong one.
+/// Errors: two mirror images that run in opposite ways, and the placed edges do not show which of
+/// them is wrong.
 fn wrong_ways(
     stitches: &[Stitch<'_>],
     panels: &[RawPanel],

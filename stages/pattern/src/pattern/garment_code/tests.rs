@@ -52,7 +52,7 @@ fn tube() -> Value {
     file(panels, json!([stitch(("front", 1), ("back", 2)), stitch(("front", 3), ("back", 0))]))
 }
 
-/// The pattern and what is told of it, warnings first; of several faults the first.
+/// The pattern and the remarks on it, warnings first; of several faults the first.
 fn read(file: &Value) -> Result<(Pattern, Vec<String>), SpecificationDamage> {
     let read = pattern(file.to_string().as_bytes(), "test").map_err(|mut all| all.remove(0));
     read.map(|(pattern, told)| (pattern, [told.warnings, told.notes].concat()))
@@ -212,7 +212,7 @@ fn a_stitch_against_its_mirror_image_or_its_place_is_turned() {
     let (p, told) = read(&f).unwrap();
     assert_eq!(told, ["stitch 1 (edge 3 of \"front\" to edge 0 of \"back\") runs the wrong way: turned"]);
     assert!(!p.lower().unwrap().plan.seams[1].reversed);
-    // One side alone has none; its place tells.
+    // One side has none; its place decides.
     f["pattern"]["stitches"].as_array_mut().unwrap().remove(0);
     assert_eq!(
         read(&f).unwrap().1,
@@ -259,7 +259,7 @@ fn a_back_that_was_copied_from_its_front_is_turned_over_where_it_stands() {
 
 #[test]
 fn stitches_of_which_the_wrong_one_is_not_certain_are_refused() {
-    // The front lies flat: its sides run across those of the back, and nothing tells which of the
+    // The front lies flat: its sides run across those of the back, and nothing says which of the
     // two is meant.
     refused(
         |f| {

@@ -1,9 +1,9 @@
 //! How many of the file's units make a metre.
 //!
-//! Method: the largest panel of a garment for people is between 15 cm and 5 m. A file that says so
-//! is believed. Where it says nothing, or something with which no panel is of that size, the first
-//! of the usual units is taken with which one is; that is told. Limit: a file for a doll that says
-//! so is taken for a wrong one.
+//! Method: the largest panel of a garment for people is between 15 cm and 5 m. A unit in the file
+//! that gives such a size is used. Where the file has none, or one that gives no panel of that
+//! size, the first usual unit that gives such a panel is taken, with a warning. Limit: the right
+//! unit of a file for a doll is taken for a wrong one.
 
 use super::damage::SpecificationDamage;
 use super::read::RawFile;
@@ -12,7 +12,7 @@ use toile_core::artifact::Point2;
 
 /// The size of the largest panel, metres.
 const PLAUSIBLE: (f64, f64) = (0.15, 5.0);
-/// And where the unit is guessed.
+/// The size of the largest panel where the unit is guessed, metres.
 const LIKELY: (f64, f64) = (0.25, 2.5);
 /// Units in a metre: centimetres as GarmentCode writes, a third of that as some of its forerunner's
 /// templates, millimetres, inches, metres.

@@ -3,10 +3,9 @@
 //! Method: the free edges that meet end to end once the seams before are sewn form rings: an edge
 //! is followed by the next of its piece, across a seam by the next of the other piece. A tube's
 //! ring of one edge (the cap of a sleeve) is sewn into a ring of several; it begins where the
-//! tube's own seam ends, there at the lowest corner. Which of two armholes it is tells the notches.
-//! A long edge of a band is sewn along a ring that is no hem. Lengths differ by the ease that
-//! tailors give. Cost: rings squared. Limits: tubes of one piece; a band around an open front is
-//! not found.
+//! tube's own seam ends, there at the lowest corner. Notches decide between two armholes. A long
+//! edge of a band is sewn along a ring that is no hem. Lengths differ by the ease that tailors
+//! give. Cost: rings squared. Limits: tubes of one piece; a band around an open front is not found.
 
 use super::{Candidate, End, candidate};
 use std::collections::{BTreeMap, BTreeSet};
@@ -179,7 +178,7 @@ fn opening(pieces: &[Piece], ring: &Ring) -> Vec<At> {
 }
 
 /// The mean distance between the notches of an edge and those of a ring that is sewn to it, both
-/// from their start; none where they have not as many.
+/// from their start; none where their numbers differ.
 fn notches(pieces: &[Piece], edge: At, ring: &[At]) -> Option<f64> {
     let along = |(i, k): At| {
         let p = &pieces[i];

@@ -3,7 +3,7 @@
 //!
 //! [`source`] reads the text, [`units`] finds the length of its unit, [`drawing`] walks what is
 //! drawn ([`path`] its lines, [`role`] what they are for), [`pieces`] makes pieces of it. Cost:
-//! some milliseconds a piece.
+//! some milliseconds per piece.
 
 mod damage;
 mod drawing;

@@ -5,7 +5,7 @@
 //! lies on another if it lies wholly within it, and is not filled like it, as what is drawn over
 //! something else is. A rectangle around all other lines, of which several are outlines, is a
 //! frame. Cost: lines squared, times the points of [`SAMPLES`]. Limits: a piece that lies wholly
-//! within another and is not filled is taken for a line on it, which the caller tells.
+//! within another and is not filled is taken for a line on it, which the caller reports.
 
 use super::outlined::Outlined;
 use crate::mesh::predicates::inside;

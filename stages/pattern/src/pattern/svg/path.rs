@@ -74,7 +74,7 @@ impl Pen {
         self.lift();
     }
 
-    /// The control point that goes on where the last curve ended.
+    /// The control point that continues the last curve smoothly.
     fn reflected(&self, last: Option<Point2>) -> Point2 {
         last.map_or(self.at, |c| self.at + (self.at - c))
     }

@@ -4,8 +4,8 @@
 //! in its group under the group's name, else under its own. A line called a seam or an outline goes
 //! before others; of lines within each other the outermost is the outline ([`nested`]). Lines that
 //! meet end to end are chained where a group has no closed one. Marks belong to the piece of their
-//! group, else to the piece that they lie on. What is left out is told with its place. Cost: shapes
-//! times pieces. Limits: a piece is larger than [`LEAST`].
+//! group, else to the piece that they lie on. What is left out is reported with its place. Cost:
+//! shapes times pieces. Limits: a piece is larger than [`LEAST`].
 
 use super::super::chain::{JOINT, chained};
 use super::super::copies::{MOST_COPIES, copies};
@@ -34,14 +34,14 @@ const MOST_PIECES: usize = 500;
 const MOST_OUTLINES: usize = 1_000;
 /// Curves shorter than this are none, metres.
 const POINT: f64 = 1e-7;
-/// Places of what is left out that are told one by one.
+/// Greatest number of places of left-out lines that are reported one by one.
 const MOST_TOLD: usize = 4;
-/// Shorter lines that are left out are not told, metres.
+/// Left-out lines shorter than this are not reported, metres.
 const SHORT: f64 = 0.01;
 /// A grain line this near to the horizontal says itself which end is up, as the sine of its angle.
 const LEVEL: f64 = 0.02;
 
-/// The pieces of a drawing; what was found and left out is told.
+/// The pieces of a drawing; what was found and left out is reported.
 ///
 /// Errors: all that is wrong with them.
 pub(super) fn pieces(
@@ -95,7 +95,7 @@ pub(super) fn pieces(
     if out.is_empty() { Err(vec![SvgDamage::NoPieces]) } else { Ok(out) }
 }
 
-/// Tells what is left out, and where it stands in the file.
+/// Reports what is left out, and where it is in the file.
 fn left_out<'d, 't: 'd>(why: &str, shapes: impl Iterator<Item = &'d DrawnShape<'t>>, told: &mut Remarks) {
     let places: Vec<&DrawnShape<'_>> = shapes.collect();
     if !places.is_empty() {
@@ -471,7 +471,7 @@ impl Drawn<'_> {
             return Ok(outline.sides.clone());
         }
         let mut sides = outline.sides.clone();
-        // What is cut on the fold may be drawn without its middle.
+        // A piece that is cut on the fold may be drawn without the line along the fold.
         if let (Some(fold), [side]) = (fold, &sides[..])
             && fold.has(side.start)
             && fold.has(side.end())

@@ -28,7 +28,7 @@ pub(super) enum Role {
     Nothing,
 }
 
-/// The words of a name, small; ends of words are told by what is no letter.
+/// The words of a name in lower case; anything but a letter separates words.
 fn words(name: &str) -> Vec<String> {
     let parts = name.split(|c: char| !c.is_alphabetic());
     parts.filter(|w| !w.is_empty()).map(str::to_lowercase).collect()

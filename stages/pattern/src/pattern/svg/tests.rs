@@ -17,7 +17,7 @@ fn page(inside: &str) -> String {
     )
 }
 
-/// The pieces and what is told of them, warnings first; of several faults the first. A unit is a
+/// The pieces and the remarks on them, warnings first; of several faults the first. A unit is a
 /// millimetre, whatever the page says.
 fn read(svg: &str) -> Result<(Vec<Piece>, Vec<String>), SvgDamage> {
     let mut told = Remarks::default();

@@ -133,7 +133,8 @@ impl Parser<'_> {
         }
     }
 
-    /// At the end of the file the bracket is at fault, else what stands here.
+    /// The fault of a bracket without an end: it is at the bracket if the file ends here, else at
+    /// the text that is here instead of `expected`.
     pub(super) fn unclosed(&self, opened: &Range<usize>, expected: &str) -> SyntaxFault {
         match self.peek() {
             None => {

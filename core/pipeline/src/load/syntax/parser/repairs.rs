@@ -40,7 +40,7 @@ pub(crate) enum Repair {
     Close(usize),
     /// What stands there is not there.
     Skip(Range<usize>),
-    /// What stands there closes the bracket at work.
+    /// The text there closes the bracket that is being read.
     Closer(Range<usize>),
     /// What stands there is one value.
     Value(Range<usize>),
@@ -70,7 +70,7 @@ pub(crate) struct TextRepairs {
 }
 
 impl TextRepairs {
-    /// Says of every value whether something in it was repaired.
+    /// Marks every value in which something was repaired.
     pub(crate) fn mark(&self, tree: &mut ValueTree) {
         tree.is_broken = self.list.iter().any(|r| r.is_in(&tree.span));
         if let (true, ValueShape::Group { entries, .. }) = (tree.is_broken, &mut tree.shape) {

@@ -75,8 +75,8 @@ fn what_is_clear_and_what_is_pinned_stay_where_they_are() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Whatever crumple it begins with: no more crossings, numbers that are finite, what is pinned
-    /// in its place, and the count is that of the result.
+    /// For any crumpled start: crossings do not increase, positions are finite, pinned nodes stay
+    /// in place, and the returned count is that of the result.
     #[test]
     fn it_never_makes_it_worse(
         noise in prop::collection::vec([-1.0..1.0f64, -1.0..1.0, -1.0..1.0], (CELLS + 1) * (CELLS + 1)),

@@ -62,7 +62,8 @@ fn a_vertex_that_slides_onto_the_next_triangle_is_held_as_before() {
     let (mut self_contact, mut x) = slid(Vec3::new(1e-4, 0.0, 0.0));
     let before = force(&self_contact, &x);
     self_contact.pairs = vec![over([1, 3, 2])];
-    // A hair over the border: the way is as long as before, but the contact another one.
+    // Slightly across the border of two triangles: the displacement is as long as before, but the
+    // contact is another one.
     let step = Vec3::new(0.0021, 0.0, 0.0021);
     self_contact.friction_contacts[0].memory.anchor += step;
     x[4] += step;

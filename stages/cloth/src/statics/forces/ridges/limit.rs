@@ -1,5 +1,5 @@
-//! Keeps cloth from passing a sharp feature within a step: first the cloth gives way, then moves
-//! that would still pass are shortened.
+//! Keeps cloth from passing a sharp feature within a step: first moves that come too near are
+//! changed along the normal, then moves that would still pass are shortened.
 //!
 //! The method is that of cloth against cloth (see `contact/response` and `contact/step_limit`),
 //! with features that do not move. Impacts are found by additive continuous collision detection, so
@@ -12,13 +12,14 @@ use rayon::prelude::*;
 use toile_geometry::pair;
 use toile_geometry::{Vec3, ccd::impact};
 
-/// Rounds in which cloth gives way, and in which moves are shortened node by node.
+/// Rounds in which moves are changed along the normal, and in which they are shortened node by
+/// node.
 const ROUNDS: usize = 4;
 
 /// Share of the time to impact that is used.
 const SAFETY: f64 = 0.9;
 
-/// Distance that a pair keeps when it gives way, as a share of the thickness, or of its present
+/// Distance that a pair keeps after the change, as a share of the thickness, or of its present
 /// distance where that is less.
 const KEPT_DISTANCE: f64 = 0.5;
 

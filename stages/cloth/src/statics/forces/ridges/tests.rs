@@ -7,7 +7,7 @@ use crate::statics::forces::system::System;
 use crate::statics::levels::testing::on_its_body;
 use toile_geometry::Vec3;
 
-/// A sheet of 1 m, three cells a side, none of its vertices over the blade of 2 mm that stands
+/// A sheet of 1 m, three cells per side, none of its vertices over the blade of 2 mm that stands
 /// below its middle; its height is a plane's.
 fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
     let mut scene = generate::drape(3);

@@ -39,7 +39,7 @@ fn moves(seed: u64, nodes: usize, slack: f64, share: f64) -> Vec<Vec3> {
     (0..nodes).map(one).collect()
 }
 
-/// The pairs that a look at all of the cloth would want on the way.
+/// The pairs that a search of all cloth finds along the moves.
 fn wanted(tree: &ClothTree, x: &[Vec3], moves: &[Vec3], thickness: f64) -> Vec<Pair> {
     let still = vec![Vec3::zeros(); x.len()];
     let on_the_way = |t: f64| {

@@ -102,8 +102,7 @@ fn a_cloth_comes_to_rest_on_pinned_cloth() {
         assert_eq!(x[..NODES], below[..NODES]);
         assert!(last.at_rest && last.steps > 5 && last.steps < STEPS, "{last:?}");
         assert!(tree.crossings(&x).is_empty());
-        // It has come down as far as the first lets it, whose middle may dip between the nodes
-        // about it.
+        // It lies on the first sheet, whose middle may dip between the nodes around it.
         let middle = NODES / 2;
         let gap = x[NODES + middle].y - x[middle].y;
         assert!(gap > 0.4e-3 && gap < 1.5e-3, "{gap}");

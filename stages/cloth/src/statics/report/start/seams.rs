@@ -57,7 +57,7 @@ pub(super) fn check_order(scene: &Scene, start: &[Vec3]) -> Result<(), StartErro
     Err(StartError::Reversed { seams: found.into_iter().map(|(name, _)| name).collect(), apart, turned })
 }
 
-/// Names of the seams whose sides run in opposite directions, which may be meant.
+/// Names of the seams whose sides run in opposite directions, which may be intended.
 pub(crate) fn probably_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
     let outlines = Outlines::of(scene);
     let is_turned =
@@ -87,8 +87,9 @@ struct Threads {
 }
 
 impl Threads {
-    /// Of a seam of at least two pairs; `laid` with its sides moved onto each other. `None` where
-    /// the order does not decide, for closed sides may be shifted along each other instead.
+    /// The lengths for a seam of at least two pairs; with `laid` its sides are first moved onto
+    /// each other. `None` where the order does not decide, because closed sides may be shifted
+    /// along each other instead.
     fn of(outlines: &Outlines, seam: &Seam, x: &[Vec3], laid: bool) -> Option<Self> {
         let (pairs, is_round) = outlines.in_order(seam);
         let n = pairs.len();

@@ -180,7 +180,7 @@ fn a_seam_between_pins_is_refused() {
     scene.pinned = vec![1, 50];
     assert_eq!(
         told(&scene).unwrap_err(),
-        "seam 'rail' sews together vertices that are pinned 50.0 mm apart; pin them at one place, or let one of them go"
+        "seam 'rail' sews together vertices that are pinned 50.0 mm apart; pin them at one place, or unpin one of them"
     );
     scene.pinned = vec![1, 49];
     assert_eq!(told(&scene), Ok(()));

@@ -122,7 +122,7 @@ fn area_and_height([a, b, c]: &[Vec3; 3]) -> (f64, f64) {
 }
 
 /// Refuses cloth if a large part of it lies in cloth: then neither contact nor collision detection
-/// can tell which side each belongs to.
+/// can determine which side each belongs to.
 pub(super) fn check_lying(
     scene: &Scene,
     pieces: &Pieces,

@@ -18,18 +18,18 @@ pub(super) const BLOCK: usize = 16;
 const SMALL: usize = BLOCK / 2;
 /// Parts of a pixel in what is found.
 pub(super) const PARTS: i32 = 4;
-/// The longest motion, as a share of the picture's height: one in so many.
+/// The longest motion is the picture's height divided by this.
 const REACH: usize = 8;
-/// Blocks are compared with what is around them as well: one in so many of their side.
+/// Blocks are compared with a margin around them: their side divided by this.
 const AROUND: usize = 4;
 /// Longest side of what is compared, px.
 const WINDOW: usize = BLOCK + 2 * BLOCK / AROUND;
-/// What a pixel of difference to the expected vector costs: grey levels a pixel of the window, one
-/// in so many.
+/// Cost of a difference of one pixel to the expected vector: one grey level for so many pixels of
+/// the window.
 const STIFFNESS: u32 = 8;
-/// Around the coarser level's vector all vectors are tried so far on a reduction, px.
+/// All vectors within this of the coarser level's vector are tried on a reduced picture, px.
 const WIDE: i32 = 8;
-/// Steps from the best of them.
+/// Steps of the descent from the best of these vectors.
 const STEPS: usize = 3;
 
 /// The motion of each block from one view to another, in quarters of a pixel.

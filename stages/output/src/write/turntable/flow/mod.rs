@@ -114,8 +114,8 @@ mod tests {
 
     #[test]
     fn only_blocks_of_the_sheets_have_vectors() {
-        // Two rows of sheet blocks a block: the second holds sheet block 3, so the second block is
-        // kept.
+        // Two rows of sheet blocks per block: the second holds sheet block 3, so the second block
+        // is kept.
         let mut bytes = Vec::new();
         encode(&[[9, 9], [3, -1], [9, 9], [4, 0], [4, 0], [4, 0]], 3, &[[0, 0], [3, 1], [0, 6]], &mut bytes);
         assert_eq!(bytes, [6, 1, 2, 2, 0, 0, 0, 0]);
