@@ -36,7 +36,7 @@ use toile_core::prelude::*;
 /// The vertices of each piece in space.
 type PiecePlaces = BTreeMap<String, Vec<Point3>>;
 
-/// PiecePlaces of every piece, and the sleeves among those that had none, each with the hand of its arm.
+/// Places of every piece, and the sleeves among those that had none, each with the hand of its arm.
 type Stood = (PiecePlaces, Option<Vec<(String, f64)>>);
 
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
@@ -152,7 +152,7 @@ impl Arrange {
         Ok(Garment { starts, ..whole(&offsets, seams, fabric, points) })
     }
 
-    /// PiecePlaces the pieces of a pattern that has no poses; every decision is told. What is still to
+    /// Places the pieces of a pattern that has no poses; every decision is told. What is still to
     /// be bent around an arm is named with its hand.
     fn stood(
         &self,
