@@ -3,8 +3,7 @@
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves,
 //! cuffs) are bent to cylinders around it, as the arrangement points of garment CAD do: halves
 //! before and behind the arm that are sewn to each other share one cylinder, whose girth is theirs,
-//! or the arm's where that is more. A garment of flat pieces is raised until its shoulder seams
-//! clear the shoulders ([`boards`]). Flat halves of legs that stand beside the body's are swung
+//! or the arm's where that is more. Flat halves of legs that stand beside the body's are swung
 //! before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised
 //! onto the floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto
 //! others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by
@@ -14,8 +13,6 @@
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
 //! sews them.
 
-mod boards;
-mod depth;
 mod legs;
 mod limb;
 mod moving;
@@ -27,7 +24,6 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
-use boards::Board;
 use moving::Moving;
 use region::{Decided, Region};
 use std::collections::BTreeMap;
@@ -114,9 +110,6 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
-        let boards =
-            Flat { pattern: &worn, sleeves: names(sleeves.as_deref()), seams: &seams, offsets: &flat };
-        boards.raise(&mut places, body, cx);
         let finished = |mut places: PiecePlaces| -> Result<(Vec<Point3>, Vec<String>), StageError> {
             for (name, of) in &folded {
                 if let Some(places) = places.get_mut(name) {
@@ -145,7 +138,6 @@ impl Arrange {
             }
             false => (places, Vec::new()),
         };
-        boards.in_the_way(&places, body).into_iter().for_each(|what| cx.warn(what));
         let (points, laid) = finished(places)?;
         told.into_iter().chain(laid).for_each(|what| cx.note(what));
         cx.check()?;
@@ -187,39 +179,6 @@ impl Arrange {
             -lowest * 1e2,
             by * 1e2
         ));
-    }
-}
-
-/// The names of the sleeves that were placed without a pose.
-fn names(sleeves: Option<&[(String, f64)]>) -> Vec<String> {
-    sleeves.unwrap_or_default().iter().map(|s| s.0.clone()).collect()
-}
-
-/// What is asked of the pieces that stand flat.
-struct Flat<'a> {
-    pattern: &'a Pattern,
-    sleeves: Vec<String>,
-    seams: &'a [GarmentSeam],
-    offsets: &'a Offsets<'a>,
-}
-
-impl Flat<'_> {
-    fn boards<'p>(&'p self, places: &'p PiecePlaces) -> Vec<Board<'p>> {
-        boards::boards(self.pattern, &self.sleeves, places, self.offsets)
-    }
-
-    /// Raises a garment whose shoulder seams would start in the shoulders.
-    fn raise(&self, places: &mut PiecePlaces, body: &Body, cx: &Context) {
-        let by = boards::raise(&self.boards(places), self.seams, body);
-        if by > 0.0 {
-            places.values_mut().flatten().for_each(|p| p.y += by);
-            cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
-        }
-    }
-
-    /// A sentence for each seam that the body stands between.
-    fn in_the_way(&self, places: &PiecePlaces, body: &Body) -> Vec<String> {
-        boards::in_the_way(&self.boards(places), self.seams, body)
     }
 }
 

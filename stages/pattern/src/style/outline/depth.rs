@@ -9,7 +9,7 @@ const BIN: f64 = 0.02;
 
 /// The body as seen along z.
 #[derive(Debug)]
-pub(crate) struct DepthMap<'a> {
+pub(super) struct DepthMap<'a> {
     body: &'a Body,
     origin: [f64; 2],
     counts: [usize; 2],
@@ -18,7 +18,7 @@ pub(crate) struct DepthMap<'a> {
 
 impl<'a> DepthMap<'a> {
     /// Bins a body.
-    pub(crate) fn new(body: &'a Body) -> Self {
+    pub(super) fn new(body: &'a Body) -> Self {
         let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for p in &body.positions {
             lo = [lo[0].min(p.x), lo[1].min(p.y)];
@@ -51,7 +51,7 @@ impl<'a> DepthMap<'a> {
     }
 
     /// The least and the greatest z of the skin over (x, y); `None` beside the body.
-    pub(crate) fn span(&self, x: f64, y: f64) -> Option<(f64, f64)> {
+    pub(super) fn span(&self, x: f64, y: f64) -> Option<(f64, f64)> {
         let bin = &self.bins[self.bin(1, y) * self.counts[0] + self.bin(0, x)];
         let hits = bin.iter().filter_map(|&t| {
             depth_at(self.body.triangles[t as usize].map(|v| self.body.positions[v as usize]), x, y)
