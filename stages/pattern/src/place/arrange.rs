@@ -3,7 +3,8 @@
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves,
 //! cuffs) are bent to cylinders around it, as the arrangement points of garment CAD do: halves
 //! before and behind the arm that are sewn to each other share one cylinder, whose girth is theirs,
-//! or the arm's where that is more. Flat halves of legs that stand beside the body's are swung
+//! or the arm's where that is more. A garment of flat pieces is raised until its shoulder seams
+//! clear the shoulders ([`boards`]). Flat halves of legs that stand beside the body's are swung
 //! before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised
 //! onto the floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto
 //! others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by
@@ -13,6 +14,7 @@
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
 //! sews them.
 
+mod boards;
 mod legs;
 mod limb;
 mod moving;
@@ -58,11 +60,12 @@ const MIDDLE: f64 = 0.65;
 /// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the
 /// pattern says nothing, fronts, backs, sleeves, legs in one piece and waistbands are placed by
 /// their names, seams and sizes. What was decided and moved is in the log. Where legs are swung,
-/// the places without that are left as another start, which `StaticEquilibrium` tries where the
+/// or the garment is raised until its shoulder seams clear the shoulders, the places without that
+/// are left as another start, which `StaticEquilibrium` tries where the
 /// garment does not sew.
 #[stage(
     role = Placement,
-    version = 6,
+    version = 7,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
@@ -127,17 +130,24 @@ impl Arrange {
             sleeves: sleeves.as_deref(),
             clearance: self.clearance.metres(),
         };
-        let mut starts = Vec::new();
-        let (places, told) = match self.bend {
-            true => {
-                let (moved, others) = moving.moved_and_others(&places);
-                for (told, places) in others {
-                    starts.push(GarmentStart { told: told.into(), positions: finished(places)?.0 });
-                }
-                moved
-            }
-            false => (places, Vec::new()),
+        let moved = |places: &PiecePlaces| match self.bend {
+            true => moving.moved_and_others(places),
+            false => ((places.clone(), Vec::new()), Vec::new()),
         };
+        let named = sleeves.iter().flatten().map(|s| s.0.clone()).collect::<Vec<_>>();
+        let by = boards::raise(&boards::boards(&worn, &named, &places, &flat), &seams, body);
+        let mut others = Vec::new();
+        if by > 0.0 {
+            others.push(("as high as the pattern puts it", moved(&places).0.0));
+            places.values_mut().flatten().for_each(|p| p.y += by);
+            cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
+        }
+        let ((places, told), unmoved) = moved(&places);
+        others.extend(unmoved);
+        let start = |(told, places): (&str, PiecePlaces)| -> Result<GarmentStart, StageError> {
+            Ok(GarmentStart { told: told.into(), positions: finished(places)?.0 })
+        };
+        let starts = others.into_iter().map(start).collect::<Result<Vec<_>, _>>()?;
         let (points, laid) = finished(places)?;
         told.into_iter().chain(laid).for_each(|what| cx.note(what));
         cx.check()?;

@@ -159,6 +159,25 @@ fn shoulder_seams_start_just_above_the_shoulders() {
     }
 }
 
+#[test]
+fn shoulder_seams_that_start_in_the_shoulders_are_raised() {
+    let stands = vest().place().unwrap();
+    assert_eq!(stands.starts, []);
+    let mut scene = vest();
+    let low = |p: &mut Piece| p.pose.as_mut().unwrap().origin.y -= 0.06;
+    scene.pattern.pieces.iter_mut().for_each(low);
+    let (placed, told) = scene.told();
+    let placed = placed.unwrap();
+    let by = placed.positions[0].y - (stands.positions[0].y - 0.06);
+    assert!(by > 0.02 && by < 0.07, "{by}");
+    let note = format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3);
+    assert_eq!((told.notes, told.warnings), (vec![note], vec![]));
+    // The draper may take the places of the pattern instead.
+    assert_eq!(placed.starts.len(), 1);
+    assert_eq!(placed.starts[0].told, "as high as the pattern puts it");
+    assert!((placed.positions[0].y - placed.starts[0].positions[0].y - by).abs() < 1e-12);
+}
+
 /// The message of a placement that is refused.
 fn refused(scene: &Scene) -> String {
     let e = scene.place().expect_err("refused");

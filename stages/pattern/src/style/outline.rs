@@ -6,7 +6,6 @@
 //! the edge detector found. Cost: a fit of each template, some hundredths of a second. Limits: as
 //! those of the templates; nothing is straightened, and sleeves stay part of front and back.
 
-mod depth;
 mod threads;
 
 use super::block::template::fit::Fit;
@@ -15,7 +14,6 @@ use super::block::template::form::{Form, LONG, TEE, VEST};
 use super::block::{Block, BlockStyle, Fitted, LAY, Stand, check_wearable, no_front};
 use super::sewing::{is_back, pairs, sew};
 use nalgebra::Rotation2;
-use threads::Threads;
 use toile_core::artifact::Outline as Shape;
 use toile_core::param::ron_options;
 use toile_core::prelude::*;
@@ -131,7 +129,9 @@ impl Outline {
             piece.body_part = Some(BodyPart::Body);
             piece.pose = Some(pose(laid, body)?);
         }
-        stand_free(&mut pattern, &outlines, &plan, body, cx);
+        threads::in_the_way(&outlines, &pattern, &plan.seams, body)
+            .into_iter()
+            .for_each(|what| cx.warn(what));
         Ok((pattern, outlines, plan))
     }
 }
@@ -287,16 +287,4 @@ fn pose(laid: &Laid<'_>, body: &Body) -> Result<Pose, StageError> {
     let origin = Rotation2::new(-turn) * -upright.centre - Vector2::new(*shift, 0.0);
     let layer = if is_back(laid.panel) { Layer::Back } else { Layer::Front };
     Ok(stand.pose(origin, -turn, layer))
-}
-
-/// Raises a garment whose shoulder seams would start in the shoulders, and warns of other seams
-/// between whose sides the body stands.
-fn stand_free(pattern: &mut Pattern, outlines: &Set<Shape>, plan: &SewingPlan, body: &Body, cx: &Context) {
-    let threads = Threads::new(outlines, pattern, &plan.seams, body);
-    let by = threads.raise();
-    if by > 0.0 {
-        pattern.pieces.iter_mut().filter_map(|p| p.pose.as_mut()).for_each(|pose| pose.origin.y += by);
-        cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
-    }
-    threads.in_the_way(by).into_iter().for_each(|what| cx.warn(what));
 }

@@ -403,31 +403,17 @@ proptest! {
     }
 }
 
-/// The pattern of a sample on a body, and what was said of it.
-fn worn(garment: &str, body: &Body) -> (Pattern, toile_core::Remarks) {
+/// The warnings about a T-shirt on a mannequin.
+fn warnings(body: &str) -> Vec<String> {
     let cx = Context::quiet();
-    let (pattern, ..) = style(garment).run(set(garment, |o| o), body, &cx).unwrap();
-    (pattern, cx.take_remarks())
-}
-
-#[test]
-fn shoulder_seams_that_start_in_the_shoulders_are_raised() {
-    let mut body = mannequin("()").unwrap();
-    let height = |pattern: &Pattern| pattern.piece("front").unwrap().pose.unwrap().origin.y;
-    let stands = height(&worn("vest", &body).0);
-    // A neck that is told to be lower than it is.
-    body.landmarks.get_mut("neck_left").unwrap().y -= 0.06;
-    let (pattern, told) = worn("vest", &body);
-    let by = height(&pattern) - (stands - 0.06);
-    assert!(by > 0.02 && by < 0.07, "{by}");
-    let note = format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3);
-    assert_eq!((told.notes, told.warnings), (vec![note], vec![]));
+    style("tshirt").run(set("tshirt", |o| o), &mannequin(body).unwrap(), &cx).unwrap();
+    cx.take_remarks().warnings
 }
 
 #[test]
 fn sleeves_take_the_arms_between_them() {
-    assert_eq!(worn("tshirt", &mannequin("()").unwrap()).1.warnings, Vec::<String>::new());
-    let hanging = worn("tshirt", &mannequin("(arm_angle: 30)").unwrap()).1.warnings;
+    assert_eq!(warnings("()"), Vec::<String>::new());
+    let hanging = warnings("(arm_angle: 30)");
     let start = "the seam front.underarm_left + back.underarm_left starts with the body between ";
     let end = " % of it; arms spread like the sleeves would free it (the mannequin's `arm_angle`)";
     assert!(hanging[0].starts_with(start) && hanging[0].ends_with(end), "{hanging:?}");
