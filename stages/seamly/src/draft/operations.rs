@@ -2,7 +2,7 @@
 //!
 //! What an operation draws stands in the file in the order of what it is drawn from.
 
-use super::super::plane::direction;
+use super::super::plane::{angle, direction};
 use super::super::source::{attribute, children, number};
 use super::drafting::{DraftTool, Drafting};
 use super::meetings::is_arc;
@@ -41,7 +41,7 @@ pub(super) fn operation(d: &mut Drafting, tool: &DraftTool<'_, '_>) -> Result<()
 fn put_moved(d: &mut Drafting, target: u32, drawn: &DrawnCurve, by: Affine, suffix: &str, name: String) {
     let curve = drawn.curve.moved(by, suffix);
     let angles = match is_arc(drawn) {
-        true => drawn.angles.map(|both| both.map(|a| turned_angle(by, a))),
+        true => drawn.angles.map(|both| both.map(|a| turned(by, a))),
         false => None,
     };
     // The whole name of a curve that is moved gets the suffix.
@@ -51,9 +51,9 @@ fn put_moved(d: &mut Drafting, target: u32, drawn: &DrawnCurve, by: Affine, suff
 }
 
 /// The angle of a direction that is moved, degrees.
-fn turned_angle(by: Affine, degrees: f64) -> f64 {
+fn turned(by: Affine, degrees: f64) -> f64 {
     let way = by * direction(degrees).to_point() - by * Point::ZERO;
-    super::super::plane::angle(way)
+    angle(way)
 }
 
 /// How an operation moves what it is applied to.

@@ -4,6 +4,7 @@
 //! A piece's nodes name objects of the block's modeling, which stand for those of the draft
 //! ([`model`]); [`path`] joins them, [`piece`] reads the rest.
 
+mod loops;
 mod model;
 mod path;
 mod piece;
@@ -55,6 +56,7 @@ pub(crate) fn pieces(
                 Ok(piece) => out.push(piece),
                 Err(Failed(why)) => {
                     failed.insert(why);
+                    failed.extend(piece::causes(node, &model, draft));
                 }
             }
         }

@@ -1,9 +1,10 @@
 //! A piece of the pattern: its outline, and what is drawn on it.
 
-use super::super::draft::{Asked, DraftTool, Drafting, Failed};
+use super::super::draft::{Asked, DraftObject, DraftTool, Drafting, Failed};
 use super::super::fault::{SeamlyFault, ToolPlace};
 use super::super::plane::direction;
 use super::super::source::{attribute, children, line, number, says, short};
+use super::loops::without_loops;
 use super::model::Modeling;
 use super::path::{DraftedPath, Nearness, OutlinePart, PathNode, joined};
 use kurbo::{Point, Vec2};
@@ -13,6 +14,9 @@ use roxmltree::Node;
 const ON: f64 = 2e-4;
 /// Ends meet that are this near to each other, metres.
 const SAME: f64 = 1e-5;
+
+/// Longer loops that are left out are told, millimetres.
+const TOLD: f64 = 0.2;
 
 /// At which line a piece is mirrored.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,6 +123,17 @@ fn path_nodes<'a, 't: 'a>(of: Node<'a, 't>) -> Vec<Node<'a, 't>> {
     listed.chain(children(of, &["node"])).filter(|n| says(*n, "excluded") != Some(true)).collect()
 }
 
+/// Why objects that a piece names are not drawn, each once.
+pub(super) fn causes(node: Node<'_, '_>, model: &Modeling<'_, '_>, draft: &Drafting) -> Vec<usize> {
+    let ids = path_nodes(node).into_iter().filter_map(|n| number(n, "idObject"));
+    let objects = ids.filter_map(|id| draft.objects.get(&model.object(id)));
+    let failed = objects.filter_map(|o| match o {
+        DraftObject::Failed(Failed(why)) => Some(*why),
+        DraftObject::Point { .. } | DraftObject::Curve(_) => None,
+    });
+    failed.collect()
+}
+
 /// How often a piece is cut, and whether on the fold.
 fn quantity(node: Node<'_, '_>) -> (u32, bool) {
     let Some(data) = children(node, &["data"]).next() else { return (1, false) };
@@ -180,6 +195,17 @@ impl Reader<'_, '_, '_> {
         let nodes = nodes.iter().map(|n| self.node(*n)).collect::<Result<Vec<_>, Failed>>()?;
         let near = Nearness { on: ON / self.metres, same: SAME / self.metres };
         let mut path = joined(&nodes, closed, near, &mut self.draft.boxes);
+        if let Some(path) = path.as_mut().filter(|_| closed) {
+            let taken = without_loops(path, near, &mut self.draft.boxes);
+            let most = taken.iter().fold(0.0, |a: f64, b| a.max(*b)) * self.metres * 1e3;
+            if most > TOLD {
+                self.draft.warnings.push(format!(
+                    "{}: its outline crosses itself: {} loops of up to {most:.1} mm are left out",
+                    self.place,
+                    taken.len()
+                ));
+            }
+        }
         if let Some(DraftedPath { start, parts }) = &mut path {
             let mut from = *start;
             for OutlinePart { from: name, end, .. } in parts {

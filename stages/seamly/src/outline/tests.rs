@@ -62,6 +62,27 @@ fn a_curve_begins_at_a_neighbour_that_lies_on_it() {
 }
 
 #[test]
+fn a_point_beside_the_end_of_a_curve_makes_no_spike() {
+    // From the end of the curve the path runs to D, up to G and back along the edge.
+    let more = r#"<point id="17" idObject="8" type="modeling"/>"#;
+    let nodes = NODES.replace(
+        "</nodes>",
+        r#"<node idObject="14" type="NodePoint"/><node idObject="17" type="NodePoint"/></nodes>"#,
+    );
+    let spike = r#"<point id="8" name="G" type="endLine" basePoint="4" angle="90" length="0.2"/>"#;
+    let piece = format!(r#"<piece id="40" name="P">{nodes}</piece>"#);
+    let text = pattern(&piece, more).replace("</calculation>", &format!("{spike}</calculation>"));
+    let drafted = drafted(text.as_bytes(), None).unwrap();
+    assert_eq!(starts(&drafted.pieces[0]), ["A", "F", "B", "C", "D"]);
+    assert_eq!(
+        drafted.warnings,
+        [
+            "block \"front\", piece \"P\" (line 14): its outline crosses itself: 1 loops of up to 4.0 mm are left out"
+        ]
+    );
+}
+
+#[test]
 fn nodes_that_are_excluded_are_left_out() {
     let nodes = NODES.replace(
         "idObject=\"12\" type=\"NodePoint\"",

@@ -77,7 +77,7 @@ impl DraftStroke {
     }
 
     /// The direction in which it leaves its start.
-    pub(super) fn leaves(&self) -> Vec2 {
+    pub(crate) fn leaves(&self) -> Vec2 {
         match self {
             DraftStroke::Cubic(c) => {
                 let first = [c.p1, c.p2, c.p3].into_iter().map(|p| p - c.p0).find(|d| d.hypot() > 1e-9);
@@ -88,7 +88,7 @@ impl DraftStroke {
     }
 
     /// It as cubics, near to it.
-    pub(super) fn cubics(&self) -> Vec<CubicBez> {
+    pub(crate) fn cubics(&self) -> Vec<CubicBez> {
         match self {
             DraftStroke::Cubic(c) => vec![*c],
             DraftStroke::Arc(a) => a.cubics(ACCURACY),
