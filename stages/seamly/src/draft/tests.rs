@@ -275,7 +275,7 @@ fn darts_get_legs_of_one_length() {
     assert!(((p - tip).hypot() - (q - tip).hypot()).abs() < 1e-9);
     assert!((p.x + q.x - 10.0).abs() < 1e-9 && p.y < 0.0, "{p} {q}");
     // Closed, the base line runs straight through the first point.
-    let turn = kurbo::Affine::rotate_about(2.0 * (1.0_f64 / 5.0).atan() * -1.0, tip);
+    let turn = kurbo::Affine::rotate_about(-2.0 * (1.0_f64 / 5.0).atan(), tip);
     let closed = turn * Point::new(10.0, 0.0);
     assert!(((closed - Point::ORIGIN).cross(p - Point::ORIGIN)).abs() < 1e-9);
     assert!((value(tools, "Line_p_t - Line_q_t")).abs() < 1e-9);

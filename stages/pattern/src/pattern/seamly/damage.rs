@@ -9,7 +9,7 @@ use toile_seamly::{SeamlyFault, ToolPlace};
 #[derive(Debug, Clone, PartialEq, Error)]
 pub(super) enum Damage {
     #[error("{fault}")]
-    Draft { fault: SeamlyFault, named: Option<String> },
+    Draft { fault: Box<SeamlyFault>, named: Option<String> },
     #[error("it has {count} pieces, {most} are the most")]
     Many { count: usize, most: usize },
     #[error("{place}: its outline crosses itself near ({x:.1}, {y:.1}) of the draft")]
@@ -29,7 +29,7 @@ pub(super) enum Damage {
 impl Damage {
     /// What is wrong with a draft, whose file names those measurements.
     pub(super) fn draft(fault: SeamlyFault, named: Option<&str>) -> Self {
-        Damage::Draft { fault, named: named.map(str::to_owned) }
+        Damage::Draft { fault: Box::new(fault), named: named.map(str::to_owned) }
     }
 
     /// What the user may do about it.
@@ -54,11 +54,13 @@ impl Damage {
     pub(super) fn fault(&self) -> Fault {
         let (code, param) = match self {
             Damage::Crosses { .. } => (ErrorCode::DegenerateTriangles, "file"),
-            Damage::Draft {
-                fault: SeamlyFault::Size { what, .. } | SeamlyFault::OneSize { what }, ..
-            } => (ErrorCode::InvalidParameter, *what),
-            Damage::Draft { .. }
-            | Damage::Many { .. }
+            Damage::Draft { fault, .. } => match **fault {
+                SeamlyFault::Size { what, .. } | SeamlyFault::OneSize { what } => {
+                    (ErrorCode::InvalidParameter, what)
+                }
+                _ => (ErrorCode::PatternLoading, "file"),
+            },
+            Damage::Many { .. }
             | Damage::NoFold { .. }
             | Damage::Mirror { .. }
             | Damage::Piece { .. }
