@@ -7,7 +7,7 @@ use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
 use std::time::Instant;
 use toile_core::testkit::contract::check_registered;
-use toile_core::testkit::{Outcome, Trial, cases, folder, from_example, is_checked};
+use toile_core::testkit::{Trial, TrialOutcome, cases, folder, from_example, is_checked};
 use toile_core::{Card, Contract, Registry};
 
 /// How a stage fared.
@@ -42,7 +42,7 @@ impl Health {
 }
 
 /// What came of a contract.
-enum Found {
+enum ContractFinding {
     /// It was kept in so many cases.
     Kept(usize),
     /// It was broken.
@@ -51,20 +51,20 @@ enum Found {
     Untried,
 }
 
-impl Found {
+impl ContractFinding {
     fn word(&self) -> &'static str {
         match self {
-            Found::Kept(_) => "kept",
-            Found::Broken(_) => "broken",
-            Found::Untried => "untried",
+            ContractFinding::Kept(_) => "kept",
+            ContractFinding::Broken(_) => "broken",
+            ContractFinding::Untried => "untried",
         }
     }
 
     fn reason(&self) -> String {
         match self {
-            Found::Kept(cases) => format!("{cases} cases answered"),
-            Found::Broken(why) => why.clone(),
-            Found::Untried => "the suite cannot tell for what it takes and gives".into(),
+            ContractFinding::Kept(cases) => format!("{cases} cases answered"),
+            ContractFinding::Broken(why) => why.clone(),
+            ContractFinding::Untried => "the suite cannot tell for what it takes and gives".into(),
         }
     }
 }
@@ -74,7 +74,7 @@ struct Finding<'a> {
     card: &'a Card,
     health: Health,
     seconds: f64,
-    contracts: Vec<(Contract, Found)>,
+    contracts: Vec<(Contract, ContractFinding)>,
 }
 
 impl Finding<'_> {
@@ -83,7 +83,7 @@ impl Finding<'_> {
     }
 
     fn broken(&self) -> usize {
-        self.contracts.iter().filter(|(_, f)| matches!(f, Found::Broken(_))).count()
+        self.contracts.iter().filter(|(_, f)| matches!(f, ContractFinding::Broken(_))).count()
     }
 }
 
@@ -130,11 +130,11 @@ pub(crate) fn doctor(args: &DoctorArgs, registry: &Registry, streams: &mut Strea
 }
 
 /// Holds a stage to each of its contracts.
-fn held(registry: &Registry, card: &Card) -> Vec<(Contract, Found)> {
+fn held(registry: &Registry, card: &Card) -> Vec<(Contract, ContractFinding)> {
     let found = |contract: Contract| match is_checked(card, contract) {
-        false => Found::Untried,
+        false => ContractFinding::Untried,
         true => check_registered(registry, card, contract)
-            .map_or_else(Found::Broken, |kept| Found::Kept(kept.answered)),
+            .map_or_else(ContractFinding::Broken, |kept| ContractFinding::Kept(kept.answered)),
     };
     card.contracts.iter().map(|c| (*c, found(*c))).collect()
 }
@@ -148,9 +148,9 @@ fn keep(args: &DoctorArgs, findings: &[Finding<'_>], streams: &mut Streams<'_>) 
     for finding in findings {
         for (contract, found) in &finding.contracts {
             match found {
-                Found::Kept(_) => known.note(finding.card, *contract, true),
-                Found::Broken(_) => known.note(finding.card, *contract, false),
-                Found::Untried => {}
+                ContractFinding::Kept(_) => known.note(finding.card, *contract, true),
+                ContractFinding::Broken(_) => known.note(finding.card, *contract, false),
+                ContractFinding::Untried => {}
             }
         }
     }
@@ -159,7 +159,7 @@ fn keep(args: &DoctorArgs, findings: &[Finding<'_>], streams: &mut Streams<'_>) 
     }
 }
 
-fn contract_line((contract, found): &(Contract, Found)) -> String {
+fn contract_line((contract, found): &(Contract, ContractFinding)) -> String {
     format!("    {:<24} {:<8} {}", format!("{contract:?}"), found.word(), found.reason())
 }
 
@@ -189,9 +189,9 @@ fn examine(registry: &Registry, card: &Card) -> Result<Health, String> {
     let mut first = None;
     for case in cases(card) {
         match trial.run(&case.inputs) {
-            Outcome::Answered(_) => return Ok(Health::Works),
-            Outcome::Broken(fault) => return Err(format!("on {}, {fault}", case.name)),
-            Outcome::Refused(_, message) => first = first.or(Some(format!("{}: {message}", case.name))),
+            TrialOutcome::Answered(_) => return Ok(Health::Works),
+            TrialOutcome::Broken(fault) => return Err(format!("on {}, {fault}", case.name)),
+            TrialOutcome::Refused(_, message) => first = first.or(Some(format!("{}: {message}", case.name))),
         }
     }
     Ok(first.map_or(Health::Untried, Health::Refuses))
@@ -221,7 +221,7 @@ fn summary(stages: usize, failing: usize, refused: usize) -> String {
 }
 
 fn finding_json(f: &Finding<'_>) -> Value {
-    let contract = |(c, found): &(Contract, Found)| json!({ "name": format!("{c:?}"), "found": found.word(), "reason": found.reason() });
+    let contract = |(c, found): &(Contract, ContractFinding)| json!({ "name": format!("{c:?}"), "found": found.word(), "reason": found.reason() });
     let contracts: Vec<Value> = f.contracts.iter().map(contract).collect();
     json!({ "contracts": contracts, "name": f.card.name, "role": f.card.role.as_str(), "health": f.health.word(), "reason": f.health.reason(),
         "plugin": f.card.plugin.map(|p| p.name), "seconds": f.seconds })

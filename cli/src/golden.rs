@@ -12,25 +12,25 @@ use std::path::{Path, PathBuf};
 use toile_core::RunLog;
 use toile_core::artifact::OutputFile;
 use toile_core::{Artifact, Registry, read_file, read_text};
-use toile_pipeline::golden::{Arithmetic, Comparison, Sheet, compare, parse};
+use toile_pipeline::golden::{Arithmetic, Comparison, GoldenSheet, compare, parse};
 use toile_pipeline::{Pipeline, RunError, write_files};
 use toile_stages::engine::arithmetic;
-use toile_stages::render::{Form, Picture, pictures_of};
+use toile_stages::render::{ArtifactPicture, PictureForm, pictures_of};
 
 /// The longest golden sheet, bytes.
 const LONGEST: u64 = 64 << 20;
 
 /// The places of a pipeline's golden.
-struct Places {
+struct GoldenPlaces {
     folder: PathBuf,
     stem: String,
 }
 
-impl Places {
+impl GoldenPlaces {
     fn of(pipeline: &Path) -> Self {
         let folder = pipeline.parent().unwrap_or(Path::new(".")).join("goldens");
         let stem = pipeline.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        Places { folder, stem }
+        GoldenPlaces { folder, stem }
     }
 
     fn sheet(&self) -> PathBuf {
@@ -41,7 +41,7 @@ impl Places {
 /// Runs every pipeline and names the first stage that differs from its golden.
 pub(crate) fn check(args: &CheckArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(&args.pipelines, &args.overrides, registry, streams, |pipeline, path, streams| {
-        let places = Places::of(path);
+        let places = GoldenPlaces::of(path);
         let golden = match read(&places.sheet()) {
             Ok(Some(golden)) => golden,
             Ok(None) if args.allow_missing => {
@@ -63,7 +63,7 @@ pub(crate) fn check(args: &CheckArgs, registry: &Registry, streams: &mut Streams
         };
         let golden = known(golden, path, &args.overrides, registry);
         let log = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
-        let now = Sheet::against(&golden, &log, &arithmetic()).made_by(pipeline);
+        let now = GoldenSheet::against(&golden, &log, &arithmetic()).made_by(pipeline);
         let found = compare(&golden, &now);
         Ok(report(path, &found, &log, &places, &args.out, streams))
     })
@@ -71,7 +71,7 @@ pub(crate) fn check(args: &CheckArgs, registry: &Registry, streams: &mut Streams
 
 /// The golden with what it was made by: where it does not say, by the file as it stands, without
 /// what the command line changes.
-fn known(golden: Sheet, path: &Path, overrides: &Overrides, registry: &Registry) -> Sheet {
+fn known(golden: GoldenSheet, path: &Path, overrides: &Overrides, registry: &Registry) -> GoldenSheet {
     let is_changed = !overrides.set.is_empty() || overrides.quality.is_some();
     if !golden.stages.is_empty() || !is_changed {
         return golden;
@@ -85,7 +85,7 @@ fn known(golden: Sheet, path: &Path, overrides: &Overrides, registry: &Registry)
 /// The golden in a file; none where there is no such file.
 ///
 /// Errors: it cannot be read, or a line of it is wrong.
-fn read(sheet: &Path) -> Result<Option<Sheet>, String> {
+fn read(sheet: &Path) -> Result<Option<GoldenSheet>, String> {
     let unread = |why: String| format!("cannot read the golden \"{}\": {why}", sheet.display());
     match std::fs::metadata(sheet) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -99,7 +99,7 @@ fn read(sheet: &Path) -> Result<Option<Sheet>, String> {
 /// Records new goldens, each from two equal runs.
 pub(crate) fn accept(args: &AcceptArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(&args.pipelines, &Overrides::default(), registry, streams, |pipeline, path, streams| {
-        let places = Places::of(path);
+        let places = GoldenPlaces::of(path);
         let (log, sheet) = match twice(pipeline, streams)? {
             Ok(recorded) => recorded,
             Err(why) => {
@@ -132,11 +132,11 @@ pub(crate) fn accept(args: &AcceptArgs, registry: &Registry, streams: &mut Strea
 fn twice(
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,
-) -> Result<Result<(RunLog, Sheet), String>, RunError> {
+) -> Result<Result<(RunLog, GoldenSheet), String>, RunError> {
     let arithmetic = arithmetic();
     let first = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
     let second = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
-    let sheet = |log: &RunLog| Sheet::of(log, &arithmetic).made_by(pipeline);
+    let sheet = |log: &RunLog| GoldenSheet::of(log, &arithmetic).made_by(pipeline);
     let (sheet, again) = (sheet(&first), sheet(&second));
     if sheet != again {
         let stage = compare(&sheet, &again);
@@ -201,7 +201,7 @@ fn report(
     path: &Path,
     found: &Comparison,
     log: &RunLog,
-    places: &Places,
+    places: &GoldenPlaces,
     out: &Path,
     streams: &mut Streams<'_>,
 ) -> u8 {
@@ -232,9 +232,9 @@ fn report(
 }
 
 /// The golden's picture and today's for every artifact that differs.
-fn both_pictures(found: &Comparison, log: &RunLog, places: &Places) -> Vec<OutputFile> {
+fn both_pictures(found: &Comparison, log: &RunLog, places: &GoldenPlaces) -> Vec<OutputFile> {
     let differing: Vec<&str> = found.differences.iter().map(|d| d.section.as_str()).collect();
-    let mut files = pictures(log, &Sheet::of(log, ""), Some(&differing), &places.stem);
+    let mut files = pictures(log, &GoldenSheet::of(log, ""), Some(&differing), &places.stem);
     let was: Vec<OutputFile> = files
         .iter()
         .filter_map(|f| {
@@ -248,7 +248,7 @@ fn both_pictures(found: &Comparison, log: &RunLog, places: &Places) -> Vec<Outpu
 }
 
 /// Pictures of a run's artifacts by section title, all or only those named.
-fn pictures(log: &RunLog, sheet: &Sheet, only: Option<&[&str]>, stem: &str) -> Vec<OutputFile> {
+fn pictures(log: &RunLog, sheet: &GoldenSheet, only: Option<&[&str]>, stem: &str) -> Vec<OutputFile> {
     let made = log.stages.iter().flat_map(|r| &r.outputs).flat_map(|v| v.entries());
     let drawn = made.filter(|(_, a)| a.kind().0 != "files");
     let chosen = sheet
@@ -266,11 +266,11 @@ const PICTURE_HEIGHT: u32 = 240;
 
 /// Every picture of one artifact as a file named after its section.
 fn artifact_pictures(stem: &str, title: &str, artifact: &dyn Artifact) -> Vec<OutputFile> {
-    let file = |(i, picture): (usize, Picture)| {
+    let file = |(i, picture): (usize, ArtifactPicture)| {
         let (extension, bytes) = match picture.form {
-            Form::Png(bytes) => ("png", bytes),
-            Form::Jpeg(bytes) => ("jpg", bytes),
-            Form::Svg(text) => ("svg", text.into_bytes()),
+            PictureForm::Png(bytes) => ("png", bytes),
+            PictureForm::Jpeg(bytes) => ("jpg", bytes),
+            PictureForm::Svg(text) => ("svg", text.into_bytes()),
         };
         OutputFile { path: format!("{stem}/{}.{i}.{extension}", title.replace(' ', ".")), bytes }
     };

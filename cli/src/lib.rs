@@ -26,7 +26,7 @@ mod verify;
 mod watch;
 mod why;
 
-use args::{Arguments, Bench, Command, Verb};
+use args::{Arguments, BenchCommand, Command, Verb};
 use clap::Parser;
 use std::ffi::OsString;
 use std::io::Write;
@@ -184,7 +184,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Man { command } => shell::man(&command, streams),
         Command::NewStage(args) => {
             let (name, role) = (args.name.as_str(), args.role.as_deref());
-            let asked = new_stage::Asked { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };
+            let asked =
+                new_stage::AskedStage { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };
             new_stage::new_stage(&asked, registry, streams)
         }
         Command::PluginHeader => {
@@ -202,7 +203,9 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Tune(args) => trading::tune::run(&args, registry, streams),
         Command::RunApart => trading::apart::run(registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
-        Command::Bench { what: Bench::Costs(args) } => trading::bench_costs::costs(&args, registry, streams),
+        Command::Bench { what: BenchCommand::Costs(args) } => {
+            trading::bench_costs::costs(&args, registry, streams)
+        }
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }
 }

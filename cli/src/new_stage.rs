@@ -48,7 +48,7 @@ const MAX_NAME: usize = 48;
 
 /// What is asked for.
 #[derive(Debug)]
-pub(crate) struct Asked<'a> {
+pub(crate) struct AskedStage<'a> {
     pub(crate) name: &'a str,
     pub(crate) role: Option<&'a str>,
     pub(crate) dir: Option<&'a Path>,
@@ -56,9 +56,9 @@ pub(crate) struct Asked<'a> {
 }
 
 /// Writes the crate.
-pub(crate) fn new_stage(asked: &Asked<'_>, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+pub(crate) fn new_stage(asked: &AskedStage<'_>, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     match written(asked, registry) {
-        Ok(Written { folder, name, role }) => {
+        Ok(WrittenCrate { folder, name, role }) => {
             let show = folder.display();
             let library = Path::new("target/release").join(library_of(&name));
             streams.say(format!("wrote {show}, the {} {name}", role.as_str()));
@@ -99,7 +99,7 @@ fn placed(name: &str, role: Role, registry: &Registry) -> String {
 }
 
 /// The crate that was written.
-struct Written {
+struct WrittenCrate {
     folder: PathBuf,
     name: String,
     role: Role,
@@ -111,7 +111,7 @@ fn usage(message: String) -> Refusal {
     (exit::USAGE, message)
 }
 
-fn written(asked: &Asked<'_>, registry: &Registry) -> Result<Written, Refusal> {
+fn written(asked: &AskedStage<'_>, registry: &Registry) -> Result<WrittenCrate, Refusal> {
     let name = stage_name(asked.name, registry)?;
     let role = role(asked.role, &name)?;
     let (source, dependencies) = template(role);
@@ -124,7 +124,7 @@ fn written(asked: &Asked<'_>, registry: &Registry) -> Result<Written, Refusal> {
     let core = core_dependency(asked.core, Path::new(BUILT_FROM))?;
     write_files(&folder, &files(&name, source, &manifest(&name, dependencies, &core)))
         .map_err(|e| (exit::INVALID, format!("cannot write {}: {e}", folder.display())))?;
-    Ok(Written { folder, name, role })
+    Ok(WrittenCrate { folder, name, role })
 }
 
 /// A role as it is written on the command line: `edge-detector`.

@@ -21,14 +21,14 @@ pub(crate) fn note(reads: &Reads, path: &Path) {
 
 /// What tells one content of a file from another; none of a file that is not there.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Look {
+pub(crate) struct FileLook {
     modified: Option<SystemTime>,
     size: u64,
     pub(crate) content: Option<Digest>,
 }
 
 /// Looks at a file; one whose time and size are as before is not read again.
-pub(crate) fn look(path: &Path, was: Option<&Look>) -> Option<Look> {
+pub(crate) fn look(path: &Path, was: Option<&FileLook>) -> Option<FileLook> {
     let meta = std::fs::metadata(path).ok()?;
     let (modified, size) = (meta.modified().ok(), meta.len());
     let same = was.filter(|w| w.modified == modified && w.size == size);
@@ -36,5 +36,5 @@ pub(crate) fn look(path: &Path, was: Option<&Look>) -> Option<Look> {
         Some(was) => was.content,
         None => toile_core::read_file(path).ok().map(|bytes| Digest::of(&bytes)),
     };
-    Some(Look { modified, size, content })
+    Some(FileLook { modified, size, content })
 }

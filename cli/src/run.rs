@@ -3,8 +3,8 @@
 use crate::args::RunArgs;
 use crate::failing::{fail_load, fail_run};
 use crate::terminal::progress::Bar;
-use crate::trading::costs::{self, Known};
-use crate::validate::{Refused, inspect, open, warn_before_run};
+use crate::trading::costs::{self, KnownCosts};
+use crate::validate::{RefusedPipeline, inspect, open, warn_before_run};
 use crate::{Streams, cache, exit, lock, reads, terminal::interrupt, terminal::stdin, terminal::threads};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
@@ -42,8 +42,8 @@ pub(crate) fn once(
     let asked = RunOptions { until, also, reads: reads_too, ..RunOptions::default() };
     match inspect(&pipeline, &asked) {
         Ok(()) => {}
-        Err(Refused::Run(e)) => return fail_run(&pipeline, &e, args.json, streams),
-        Err(Refused::File(faults)) => return fail_load(&faults, args.json, streams),
+        Err(RefusedPipeline::Run(e)) => return fail_run(&pipeline, &e, args.json, streams),
+        Err(RefusedPipeline::File(faults)) => return fail_load(&faults, args.json, streams),
     }
     warn_before_run(&pipeline, registry, args.until.is_none(), streams);
     if let Err(e) = check_folder(&folder(args)) {
@@ -55,7 +55,7 @@ pub(crate) fn once(
     if let Some(reads) = reads {
         reads::note_plugins(&pipeline, reads);
     }
-    let known = Arc::new(Known::of(&args.cache, args.threads));
+    let known = Arc::new(KnownCosts::of(&args.cache, args.threads));
     let so_far = SoFar::default();
     let options = RunOptions {
         so_far: Some(so_far.clone()),
@@ -177,7 +177,7 @@ fn finish(
     args: &RunArgs,
     pipeline: &Pipeline,
     result: RunResult,
-    known: &Known,
+    known: &KnownCosts,
     streams: &mut Streams<'_>,
 ) -> u8 {
     let dir = folder(args);

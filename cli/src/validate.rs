@@ -25,14 +25,14 @@ pub(crate) fn open(path: &Path, overrides: &Overrides, registry: &Registry) -> R
 
 /// Asks the stages that a run would run what is wrong with their parameters and files.
 /// The files that they look at are added to the options' `reads`.
-pub(crate) fn inspect(pipeline: &Pipeline, options: &RunOptions) -> Result<(), Refused> {
-    let plan = plan(pipeline, options).map_err(Refused::Run)?;
+pub(crate) fn inspect(pipeline: &Pipeline, options: &RunOptions) -> Result<(), RefusedPipeline> {
+    let plan = plan(pipeline, options).map_err(RefusedPipeline::Run)?;
     let runs = |i: usize| plan.get(i).is_some_and(Option::is_none);
-    faults(pipeline, runs, options.reads.as_ref()).map_err(|faults| Refused::File(Box::new(faults)))
+    faults(pipeline, runs, options.reads.as_ref()).map_err(|faults| RefusedPipeline::File(Box::new(faults)))
 }
 
 /// Why a pipeline is not run.
-pub(crate) enum Refused {
+pub(crate) enum RefusedPipeline {
     /// What is asked of it cannot be.
     Run(RunError),
     /// What its stages find wrong.
@@ -102,7 +102,7 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
 }
 
 /// A quality beside the pipeline as it is.
-pub(crate) struct Stood {
+pub(crate) struct JudgedQuality {
     pub(crate) quality: Quality,
     /// What its claim is worth.
     pub(crate) standing: Standing,
@@ -117,19 +117,19 @@ pub(crate) fn standings(
     overrides: &Overrides,
     pipeline: &Pipeline,
     registry: &Registry,
-) -> Vec<Stood> {
+) -> Vec<JudgedQuality> {
     let stood = |quality: &Quality| {
         let with = Overrides { quality: Some(quality.name.clone()), set: overrides.set.clone() };
         // A file that loads without its qualities loads with each of them, unless it changed
         // meanwhile.
         let with = open(path, &with, registry).ok();
         let standing = with.as_ref().map_or(Standing::Unknown, |p| quality.standing(p));
-        Stood { quality: quality.clone(), standing, now: with.as_ref().map(Basis::of) }
+        JudgedQuality { quality: quality.clone(), standing, now: with.as_ref().map(Basis::of) }
     };
     pipeline.qualities.iter().map(stood).collect()
 }
 
 /// Qualities in words: `Draft (10 mm), Fine (2 mm, measured for another pipeline)`.
-pub(crate) fn quality_words(stood: &[Stood]) -> String {
+pub(crate) fn quality_words(stood: &[JudgedQuality]) -> String {
     stood.iter().map(|s| s.quality.words(s.standing)).collect::<Vec<_>>().join(", ")
 }

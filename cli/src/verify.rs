@@ -6,8 +6,8 @@ use std::path::Path;
 use toile_core::StageError;
 use toile_core::artifact::OutputFile;
 use toile_pipeline::write_files;
-use toile_verify::Limits;
-use toile_verify::files::{Asked, certify};
+use toile_verify::CheckLimits;
+use toile_verify::files::{AskedFiles, certify};
 
 /// The certificate's name beside a garment.
 const FILE: &str = "certificate.json";
@@ -38,11 +38,11 @@ fn refused(json: bool, e: &StageError, streams: &mut Streams<'_>) -> u8 {
 
 /// Whether the garment holds, and what is said of it; the certificate is written.
 fn certified(args: &VerifyArgs) -> Result<(bool, Vec<String>), StageError> {
-    let mut limits = Limits { tight: f64::from(args.max_tight) / 100.0, ..Limits::default() };
+    let mut limits = CheckLimits { tight: f64::from(args.max_tight) / 100.0, ..CheckLimits::default() };
     if let Some(gap) = args.max_gap {
         limits.gap = gap.metres();
     }
-    let asked = Asked {
+    let asked = AskedFiles {
         garment: args.garment.clone(),
         pattern: args.pattern.clone(),
         seams: args.seams.clone(),

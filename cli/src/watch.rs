@@ -7,7 +7,7 @@
 //! counts once two looks in a row see the same, so that a file half written is not run.
 
 use crate::args::RunArgs;
-use crate::reads::{Look, look, note};
+use crate::reads::{FileLook, look, note};
 use crate::run::once;
 use crate::{Streams, exit, refused, terminal::interrupt, terminal::stdin, with_plugins};
 use std::collections::BTreeMap;
@@ -73,7 +73,7 @@ fn note_named(reads: &Reads, pipeline: &Path, plugins: &[PathBuf]) {
 }
 
 /// How files are now; none of one that is not there.
-type Looks = BTreeMap<PathBuf, Option<Look>>;
+type Looks = BTreeMap<PathBuf, Option<FileLook>>;
 
 /// Waits until the content of a file is another than the one that was used, and then stays; none
 /// once `stopped`.

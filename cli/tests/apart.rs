@@ -18,8 +18,8 @@ use toile_trade::ablate;
 use toile_trade::knobs::source::Source;
 use toile_trade::measure::Bench;
 use toile_trade::measure::apart::Apart;
-use toile_trade::record::{Clock, Outcome, Trade};
-use toile_trade::study::{Options, study};
+use toile_trade::record::{Clock, SettingOutcome, Trade};
+use toile_trade::study::{StudyOptions, study};
 
 const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [StaticEquilibrium(speed: 0.01)])";
 
@@ -127,7 +127,7 @@ fn through_a_shell(dir: &Path, out: &str, kills: usize) -> (Trade, usize) {
     let registry = toile::registry();
     let (text, file, base) = (PIPELINE.to_owned(), "sheet.ron".to_owned(), dir.to_owned());
     let source = Source { text, file, base, quality: None, set: Vec::new(), registry: &registry };
-    let options = Options {
+    let options = StudyOptions {
         out: dir.join(out),
         budget: Duration::from_secs(120),
         limit: None,
@@ -152,7 +152,7 @@ fn a_run_that_the_system_ends_is_a_failed_setting_and_the_study_goes_on() {
     let (trade, again) = through_a_shell(dir.path(), "killed", runs - 1);
     assert_eq!((again, trade.points.len()), (runs, 3), "each setting is run once");
     let message = "the run's own process was ended by signal 9".to_owned();
-    assert_eq!(trade.points[1].outcome, Outcome::Failed { code: "internal".into(), message });
+    assert_eq!(trade.points[1].outcome, SettingOutcome::Failed { code: "internal".into(), message });
     for i in [0, 2] {
         let errors = |t: &Trade| t.points[i].measured().unwrap().errors.clone();
         assert_eq!(errors(&trade), errors(&whole));
@@ -172,7 +172,8 @@ fn an_ablation_that_the_user_ends_goes_on_from_the_runs_that_were_done() {
         let apart = shell(&counter, hangs, "exec sleep 600");
         let (cancel, mut begun) = (Cancel::new(), 0);
         let bench = Bench { until: None, cancel: cancel.clone(), listener: Arc::new(()), apart };
-        let options = ablate::Options { out: dir.join("out"), repeats: 2, budget: None, limit: None, bench };
+        let options =
+            ablate::AblationOptions { out: dir.join("out"), repeats: 2, budget: None, limit: None, bench };
         ablate::ablate(&source, &source.load(&[]).unwrap(), &options, &mut |_| {
             begun += 1;
             if begun == hangs {

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// the `Laplacian` that smooths do; a pipeline's loader tells them apart by what they take.
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
-    cards: BTreeMap<(&'static str, Role), Entry>,
+    cards: BTreeMap<(&'static str, Role), StageEntry>,
     sections: Vec<Section>,
     implicit: Vec<fn() -> Box<dyn Stage>>,
     plugins: Vec<Plugin>,
@@ -27,7 +27,7 @@ pub struct Registry {
 
 /// A stage type.
 #[derive(Debug, Clone)]
-struct Entry {
+struct StageEntry {
     card: Card,
     maker: Maker,
     /// How many were added before it: the first of a role is its default.
@@ -94,7 +94,7 @@ impl Registry {
 
     fn insert(&mut self, card: Card, maker: Maker) {
         let order = self.cards.len();
-        self.cards.insert((card.name, card.role), Entry { card, maker, order });
+        self.cards.insert((card.name, card.role), StageEntry { card, maker, order });
     }
 
     /// Adds the stages of a plugin that was loaded from `path`, all or none. A plugin that is there
@@ -204,7 +204,7 @@ impl Registry {
 
     /// All cards in the order in which they were added: of each role the default comes first.
     pub fn in_order(&self) -> Vec<&Card> {
-        let mut entries: Vec<&Entry> = self.cards.values().collect();
+        let mut entries: Vec<&StageEntry> = self.cards.values().collect();
         entries.sort_by_key(|e| e.order);
         entries.into_iter().map(|e| &e.card).collect()
     }

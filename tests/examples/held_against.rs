@@ -15,17 +15,17 @@ use toile_core::artifact::Garment;
 use toile_core::{Cancel, Listener};
 use toile_pipeline::{Override, load};
 use toile_trade::measure::Bench;
-use toile_trade::surface::{Spread, Surface, displacement, distance};
+use toile_trade::surface::{DrapedSurface, Spread, displacement, distance};
 
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let mut groups = args.split(|a| a == "--");
     let (reference, cpu_s) = solve(groups.next().unwrap());
     println!("{:7} triangles, {cpu_s:6.2} s: the reference", reference.triangles.len());
-    let reference = Surface::new(&reference).unwrap();
+    let reference = DrapedSurface::new(&reference).unwrap();
     for group in groups {
         let (garment, cpu_s) = solve(group);
-        let own = Surface::new(&garment).unwrap();
+        let own = DrapedSurface::new(&garment).unwrap();
         println!(
             "{:7} triangles, {cpu_s:6.2} s: distance {}, displacement {} mm: {}",
             garment.triangles.len(),

@@ -16,7 +16,7 @@ use toile_core::artifact::Garment;
 use toile_core::{Cancel, Listener};
 use toile_pipeline::{Override, Pipeline, load};
 use toile_trade::measure::Bench;
-use toile_trade::surface::{Spread, Surface, displacement, distance};
+use toile_trade::surface::{DrapedSurface, Spread, displacement, distance};
 
 fn main() {
     let mut args = std::env::args().skip(1);
@@ -29,7 +29,7 @@ fn main() {
     let (settled, _) = run(&pipeline, "Settled");
     let area: f64 = own.panels.iter().map(|p| flat_area(&own, p.triangles.clone())).sum();
     println!("{:6} triangles, {cpu_s:6.2} s up to {until}, {:.2} cm2", own.triangles.len(), area * 1e4);
-    let (own, settled) = (Surface::new(&own).unwrap(), Surface::new(&settled).unwrap());
+    let (own, settled) = (DrapedSurface::new(&own).unwrap(), DrapedSurface::new(&settled).unwrap());
     println!("distance     {}", mm(distance(&own, &settled)));
     println!("displacement {}", mm(displacement(&own, &settled)));
 }

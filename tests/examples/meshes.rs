@@ -15,7 +15,7 @@ use toile_core::artifact::Garment;
 use toile_core::{Cancel, Listener};
 use toile_pipeline::{Override, Pipeline, load};
 use toile_trade::measure::Bench;
-use toile_trade::surface::{Spread, Surface, displacement, distance, pairs};
+use toile_trade::surface::{DrapedSurface, Spread, displacement, distance, pairs};
 
 fn main() {
     let mut args = std::env::args().skip(1);
@@ -28,13 +28,13 @@ fn main() {
         let now = solve(&file, all, &until);
         if let Some((name, was)) = &last {
             println!("{name} to {value}");
-            tell(&Surface::new(was).unwrap(), &Surface::new(&now).unwrap());
+            tell(&DrapedSurface::new(was).unwrap(), &DrapedSurface::new(&now).unwrap());
         }
         last = Some((value.to_owned(), now));
     }
 }
 
-fn tell(was: &Surface<'_>, now: &Surface<'_>) {
+fn tell(was: &DrapedSurface<'_>, now: &DrapedSurface<'_>) {
     let mm = |s: Spread| format!("{:.2} / {:.2} / {:.2}", s.mean * 1e3, s.p95 * 1e3, s.max * 1e3);
     println!("distance {} mm, displacement {} mm", mm(distance(was, now)), mm(displacement(was, now)));
     let mut squares: BTreeMap<(usize, i64, i64), (f64, [f64; 3])> = BTreeMap::new();

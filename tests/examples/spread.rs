@@ -16,7 +16,7 @@ use toile_core::{Cancel, Length, Listener};
 use toile_pipeline::{Override, Pipeline, load};
 use toile_trade::measure::Bench;
 use toile_trade::measure::jitter;
-use toile_trade::surface::{Surface, displacement, distance};
+use toile_trade::surface::{DrapedSurface, displacement, distance};
 
 fn main() {
     let mut args = std::env::args().skip(1);
@@ -35,7 +35,7 @@ fn main() {
 }
 
 fn tell(amount: f64, seed: u64, moved: &Garment, own: &Garment) {
-    let (moved, own) = (Surface::new(moved).unwrap(), Surface::new(own).unwrap());
+    let (moved, own) = (DrapedSurface::new(moved).unwrap(), DrapedSurface::new(own).unwrap());
     let mm = |s: toile_trade::surface::Spread| {
         format!("{:.2} / {:.2} / {:.2}", s.mean * 1e3, s.p95 * 1e3, s.max * 1e3)
     };

@@ -2,13 +2,13 @@
 
 use crate::ablate::path_to;
 use crate::saving::{Evidence, Saving};
-use toile_pipeline::decide::Decided;
+use toile_pipeline::decide::StageDecision;
 
 /// A decision with the words that need more than itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Told {
     /// The decision.
-    pub decided: Decided,
+    pub decided: StageDecision,
     /// What it saves.
     pub saving: Saving,
     /// How it is turned round.
@@ -16,8 +16,8 @@ pub struct Told {
 }
 
 /// Adds to decisions what they save and how they are turned round.
-pub fn told(evidence: &Evidence<'_>, decided: Vec<Decided>) -> Vec<Told> {
-    let one = |decided: Decided| {
+pub fn told(evidence: &Evidence<'_>, decided: Vec<StageDecision>) -> Vec<Told> {
+    let one = |decided: StageDecision| {
         let path = path_to(evidence.source, evidence.pipeline, &decided.stage);
         Told { saving: evidence.saving(&decided), turned: decided.words(&path), decided }
     };
@@ -53,7 +53,7 @@ pub fn lines(told: &[Told]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::record::Clock;
-    use crate::saving::Basis;
+    use crate::saving::SavingBasis;
     use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 
     #[test]
@@ -68,9 +68,9 @@ mod tests {
             source: "Nyquist 1928".into(),
             turn: Turn::Also,
         };
-        let decided = Decided { stage: "Mean".into(), decision };
+        let decided = StageDecision { stage: "Mean".into(), decision };
         let saving = Saving {
-            basis: Basis::Modelled,
+            basis: SavingBasis::Modelled,
             seconds: Some(2.0),
             clock: Clock::Wall,
             noise_s: None,

@@ -2,8 +2,8 @@
 //! blended.
 
 use crate::measure::Ran;
-use crate::silhouette::{Side, agreement};
-use crate::surface::{Spread, Surface, displacement, distance};
+use crate::silhouette::{ViewSide, agreement};
+use crate::surface::{DrapedSurface, Spread, displacement, distance};
 use crate::{girth, texture};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -57,7 +57,7 @@ pub struct Errors {
 /// Errors: garments without triangles, or of other panels.
 pub fn compare(found: &Ran, reference: &Ran) -> Result<Errors, StageError> {
     same_panels(found, reference)?;
-    let (a, b) = (Surface::new(&found.garment)?, Surface::new(&reference.garment)?);
+    let (a, b) = (DrapedSurface::new(&found.garment)?, DrapedSurface::new(&reference.garment)?);
     let texture = match (&found.model, &reference.model) {
         (Some(p), Some(q)) => texture::difference((&a, p), (&b, q)),
         _ => None,
@@ -77,8 +77,8 @@ pub fn compare(found: &Ran, reference: &Ran) -> Result<Errors, StageError> {
         area_pp: panel(|p| p.area_error),
         outline_pp: panel(|p| p.outline_error),
         strain_p99_pp: (strain(found) - strain(reference)) * 1e2,
-        silhouette_front: agreement(&found.garment, &reference.garment, Side::Front),
-        silhouette_side: agreement(&found.garment, &reference.garment, Side::Left),
+        silhouette_front: agreement(&found.garment, &reference.garment, ViewSide::Front),
+        silhouette_side: agreement(&found.garment, &reference.garment, ViewSide::Left),
         texture_levels: texture,
     })
 }

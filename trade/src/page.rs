@@ -3,7 +3,7 @@
 
 use crate::measure::Ran;
 use crate::plot::{marks, png, svg};
-use crate::record::{Clock, Measured, Outcome, Trade};
+use crate::record::{Clock, Measured, SettingOutcome, Trade};
 use crate::table::{by_time, csv, reference, setting_of, whose_memory};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -14,7 +14,7 @@ use serde::Serialize;
 use std::path::Path;
 use toile_core::StageError;
 use toile_core::artifact::OutputFile;
-use toile_stages::render::{Scene, View, garment_model};
+use toile_stages::render::{ModelScene, View, garment_model};
 
 /// Height of a garment's picture, px: folds show, and forty settings make a page of a megabyte.
 const HEIGHT: u32 = 300;
@@ -33,7 +33,7 @@ pub(crate) fn pictures(key: &str, ran: &Ran) -> Vec<OutputFile> {
             &plain
         }
     };
-    let scene = Scene::draft(model);
+    let scene = ModelScene::draft(model);
     let shot = |(name, view): (&str, View)| {
         let mut bytes = Vec::new();
         let encoder = JpegEncoder::new_with_quality(&mut bytes, QUALITY);
@@ -68,20 +68,20 @@ pub fn files(trade: &Trade, folder: &Path) -> Result<Vec<OutputFile>, StageError
 
 /// What the template shows.
 #[derive(Serialize)]
-struct Page {
+struct StudyPage {
     pipeline: String,
     file: String,
     about: String,
     drawing: String,
     reference: Vec<String>,
     knobs: Vec<[String; 2]>,
-    points: Vec<Entry>,
+    points: Vec<SettingEntry>,
     missed: Vec<[String; 2]>,
 }
 
 /// One setting.
 #[derive(Serialize)]
-struct Entry {
+struct SettingEntry {
     number: usize,
     on_front: bool,
     sound: bool,
@@ -97,11 +97,11 @@ fn html(trade: &Trade, drawing: &str, folder: &Path) -> Result<String, minijinja
     environment.get_template(TEMPLATE.0)?.render(Value::from(Serde(page(trade, drawing, folder))))
 }
 
-fn page(trade: &Trade, drawing: &str, folder: &Path) -> Page {
+fn page(trade: &Trade, drawing: &str, folder: &Path) -> StudyPage {
     let machine = &trade.machine;
     let load = machine.load.map_or_else(String::new, |l| format!(", load {l:.1}"));
     let ran = by_time(trade).into_iter().filter_map(|i| Some((i, trade.points[i].measured()?)));
-    Page {
+    StudyPage {
         pipeline: trade.pipeline.clone(),
         file: trade.file.clone(),
         about: format!(
@@ -120,21 +120,21 @@ fn page(trade: &Trade, drawing: &str, folder: &Path) -> Page {
     }
 }
 
-fn why(outcome: &Outcome) -> Option<String> {
+fn why(outcome: &SettingOutcome) -> Option<String> {
     match outcome {
-        Outcome::Measured(_) => None,
-        Outcome::Failed { message, .. } => Some(message.clone()),
-        Outcome::OverLimit { seconds } => Some(format!("stopped after {seconds:.0} s")),
+        SettingOutcome::Measured(_) => None,
+        SettingOutcome::Failed { message, .. } => Some(message.clone()),
+        SettingOutcome::OverLimit { seconds } => Some(format!("stopped after {seconds:.0} s")),
     }
 }
 
-fn entry(trade: &Trade, i: usize, m: &Measured, folder: &Path) -> Entry {
+fn entry(trade: &Trade, i: usize, m: &Measured, folder: &Path) -> SettingEntry {
     let point = &trade.points[i];
     let inline = |name: &str| {
         let bytes = toile_core::read_file(&folder.join(picture(&point.key, name))).ok()?;
         Some(format!("data:image/jpeg;base64,{}", STANDARD.encode(bytes)))
     };
-    Entry {
+    SettingEntry {
         number: i + 1,
         on_front: trade.front.contains(&i),
         sound: m.sound,

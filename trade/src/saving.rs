@@ -1,20 +1,20 @@
 //! What a decision saves: as it was measured, by the cost model, or by an estimate that its rule
 //! carries; and which of these.
 
-use crate::ablate::{Ablation, Row, path_to};
+use crate::ablate::{Ablation, DecisionRow, path_to};
 use crate::cost::{Costs, predict, time, total};
 use crate::knobs::source::Source;
 use crate::record::Clock;
 use serde::Serialize;
 use toile_core::cost::Predicted;
 use toile_core::decide::{Saves, Turn};
-use toile_pipeline::decide::Decided;
+use toile_pipeline::decide::StageDecision;
 use toile_pipeline::{Override, Pipeline};
 
 /// What a figure rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Basis {
+pub enum SavingBasis {
     /// Runs of this very pipeline with the decision turned round (`toile trade --ablate`).
     Measured,
     /// The cost model, for the pipeline with the decision and without it.
@@ -29,7 +29,7 @@ pub enum Basis {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Saving {
     /// What the figures rest on.
-    pub basis: Basis,
+    pub basis: SavingBasis,
     /// Seconds; none where they are not known.
     pub seconds: Option<f64>,
     /// Which clock the seconds are by.
@@ -44,7 +44,7 @@ pub struct Saving {
 }
 
 impl Saving {
-    fn by(basis: Basis, seconds: Option<f64>) -> Self {
+    fn by(basis: SavingBasis, seconds: Option<f64>) -> Self {
         Saving { basis, seconds, clock: Clock::Wall, noise_s: None, share: None, date: None }
     }
 
@@ -52,17 +52,17 @@ impl Saving {
     pub fn words(&self) -> String {
         let about = |s: f64| format!("about {} of an expected run", time(s));
         match (self.basis, self.seconds) {
-            (Basis::Measured, seconds) => self.measured(seconds.unwrap_or(0.0)),
-            (Basis::Estimated, seconds) => {
+            (SavingBasis::Measured, seconds) => self.measured(seconds.unwrap_or(0.0)),
+            (SavingBasis::Estimated, seconds) => {
                 let share = self.share.map_or_else(String::new, |s| {
                     format!(": {:.0} % of what the stage takes without it", s * 100.0)
                 });
                 let seconds = seconds.filter(|s| *s >= 1e-3);
                 format!("estimated{share}{}", seconds.map_or_else(String::new, |s| format!(", {}", about(s))))
             }
-            (Basis::Modelled, Some(s)) if s >= 1e-3 => about(s),
-            (Basis::Modelled, _) => "nothing that could be expected".into(),
-            (Basis::Unknown, _) => "not known".into(),
+            (SavingBasis::Modelled, Some(s)) if s >= 1e-3 => about(s),
+            (SavingBasis::Modelled, _) => "nothing that could be expected".into(),
+            (SavingBasis::Unknown, _) => "not known".into(),
         }
     }
 
@@ -90,38 +90,42 @@ pub struct Evidence<'a> {
 
 impl Evidence<'_> {
     /// What a decision saves, by the best that is known.
-    pub fn saving(&self, decided: &Decided) -> Saving {
+    pub fn saving(&self, decided: &StageDecision) -> Saving {
         self.measured(decided).unwrap_or_else(|| match decided.decision.saves {
             Saves::Share(share) => self.estimated(decided, share),
             Saves::Modelled => {
                 let seconds = self.modelled(decided);
-                Saving::by(if seconds.is_some() { Basis::Modelled } else { Basis::Unknown }, seconds)
+                Saving::by(
+                    if seconds.is_some() { SavingBasis::Modelled } else { SavingBasis::Unknown },
+                    seconds,
+                )
             }
         })
     }
 
-    fn measured(&self, decided: &Decided) -> Option<Saving> {
+    fn measured(&self, decided: &StageDecision) -> Option<Saving> {
         let ablation = self.ablation?;
-        let is_it =
-            |r: &&Row| r.decided.stage == decided.stage && r.decided.decision.rule == decided.decision.rule;
+        let is_it = |r: &&DecisionRow| {
+            r.decided.stage == decided.stage && r.decided.decision.rule == decided.decision.rule
+        };
         let row = ablation.rows.iter().find(is_it).filter(|r| r.failed.is_none())?;
         let saved = row.saved()?;
         Some(Saving {
             clock: Clock::Cpu,
             noise_s: Some(saved.noise).filter(|n| n.is_finite()),
             date: Some(ablation.date.clone()),
-            ..Saving::by(Basis::Measured, Some(saved.mean))
+            ..Saving::by(SavingBasis::Measured, Some(saved.mean))
         })
     }
 
     /// The stage is expected to take what is left of it by the share.
-    fn estimated(&self, decided: &Decided, share: f64) -> Saving {
+    fn estimated(&self, decided: &StageDecision, share: f64) -> Saving {
         let left = self.seconds(self.pipeline, |stage| stage == decided.stage);
         let seconds = left.map(|s| s * share / (1.0 - share)).filter(|s| s.is_finite());
-        Saving { share: Some(share), ..Saving::by(Basis::Estimated, seconds) }
+        Saving { share: Some(share), ..Saving::by(SavingBasis::Estimated, seconds) }
     }
 
-    fn modelled(&self, decided: &Decided) -> Option<f64> {
+    fn modelled(&self, decided: &StageDecision) -> Option<f64> {
         match &decided.decision.turn {
             Turn::Also => self.seconds(self.pipeline, |stage| stage == decided.stage),
             Turn::Param { name, value } => {
@@ -145,7 +149,7 @@ impl Evidence<'_> {
 mod tests {
     use super::*;
 
-    fn saving(basis: Basis, seconds: Option<f64>) -> Saving {
+    fn saving(basis: SavingBasis, seconds: Option<f64>) -> Saving {
         Saving::by(basis, seconds)
     }
 
@@ -154,7 +158,7 @@ mod tests {
         let measured = |seconds: f64, noise_s: Option<f64>| Saving {
             noise_s,
             date: Some("2026-11-22".into()),
-            ..saving(Basis::Measured, Some(seconds))
+            ..saving(SavingBasis::Measured, Some(seconds))
         };
         let words = [
             (measured(0.368, Some(0.095)), "0.37 s of processor time (+- 0.10 s), measured on 2026-11-22"),
@@ -163,17 +167,17 @@ mod tests {
                 measured(0.02, Some(0.05)),
                 "nothing that could be measured on 2026-11-22: 0.02 s of processor time (+- 0.05 s)",
             ),
-            (saving(Basis::Modelled, Some(0.5)), "about 500 ms of an expected run"),
-            (saving(Basis::Modelled, Some(-0.5)), "nothing that could be expected"),
+            (saving(SavingBasis::Modelled, Some(0.5)), "about 500 ms of an expected run"),
+            (saving(SavingBasis::Modelled, Some(-0.5)), "nothing that could be expected"),
             (
-                Saving { share: Some(0.4), ..saving(Basis::Estimated, Some(0.12)) },
+                Saving { share: Some(0.4), ..saving(SavingBasis::Estimated, Some(0.12)) },
                 "estimated: 40 % of what the stage takes without it, about 120 ms of an expected run",
             ),
             (
-                Saving { share: Some(0.4), ..saving(Basis::Estimated, None) },
+                Saving { share: Some(0.4), ..saving(SavingBasis::Estimated, None) },
                 "estimated: 40 % of what the stage takes without it",
             ),
-            (saving(Basis::Unknown, None), "not known"),
+            (saving(SavingBasis::Unknown, None), "not known"),
         ];
         for (saving, expected) in words {
             assert_eq!(saving.words(), expected);

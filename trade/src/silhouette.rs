@@ -14,44 +14,44 @@ const MOST_PIXELS: f64 = 2000.0;
 
 /// From where a garment is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Side {
+pub(crate) enum ViewSide {
     /// Along the depth.
     Front,
     /// Along the width.
     Left,
 }
 
-impl Side {
+impl ViewSide {
     fn project(self, garment: &Garment) -> Vec<Point2> {
         let place = |p: &toile_core::artifact::Point3| match self {
-            Side::Front => Point2::new(p.x, p.y),
-            Side::Left => Point2::new(p.z, p.y),
+            ViewSide::Front => Point2::new(p.x, p.y),
+            ViewSide::Left => Point2::new(p.z, p.y),
         };
         garment.positions.iter().map(place).collect()
     }
 }
 
 /// Intersection over union of the two shapes.
-pub(crate) fn agreement(a: &Garment, b: &Garment, side: Side) -> f64 {
+pub(crate) fn agreement(a: &Garment, b: &Garment, side: ViewSide) -> f64 {
     let (p, q) = (side.project(a), side.project(b));
     let first = p.first().copied().unwrap_or_else(Point2::origin);
     let (lo, hi) = p.iter().chain(&q).fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)));
     let extent = hi - lo;
     let pixel = PIXEL.max(extent.x.max(extent.y) / MOST_PIXELS);
-    let grid = Grid { lo, pixel, size: [extent.x, extent.y].map(|e| (e / pixel).ceil() as usize + 1) };
+    let grid = PixelGrid { lo, pixel, size: [extent.x, extent.y].map(|e| (e / pixel).ceil() as usize + 1) };
     let (a, b) = (grid.cover(&p, &a.triangles), grid.cover(&q, &b.triangles));
     let count = |test: fn(bool, bool) -> bool| a.iter().zip(&b).filter(|(a, b)| test(**a, **b)).count();
     let (both, any) = (count(|a, b| a && b), count(|a, b| a || b));
     both as f64 / any.max(1) as f64
 }
 
-struct Grid {
+struct PixelGrid {
     lo: Point2,
     pixel: f64,
     size: [usize; 2],
 }
 
-impl Grid {
+impl PixelGrid {
     fn cover(&self, points: &[Point2], triangles: &[[u32; 3]]) -> Vec<bool> {
         let mut covered = vec![false; self.size[0] * self.size[1]];
         for t in triangles {
@@ -93,8 +93,12 @@ mod tests {
     #[test]
     fn a_sheet_agrees_with_itself_and_half_with_itself_moved_by_a_third() {
         let a = sheet(4, 0.3);
-        assert_eq!(agreement(&a, &a, Side::Front), 1.0);
+        assert_eq!(agreement(&a, &a, ViewSide::Front), 1.0);
         let b = shifted(&a, [0.1, 0.0, 0.0]);
-        assert!((agreement(&a, &b, Side::Front) - 0.5).abs() < 0.01, "{}", agreement(&a, &b, Side::Front));
+        assert!(
+            (agreement(&a, &b, ViewSide::Front) - 0.5).abs() < 0.01,
+            "{}",
+            agreement(&a, &b, ViewSide::Front)
+        );
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::digits::to_digits;
 use crate::knobs::slot::setting_words;
-use crate::record::{Clock, Level, Measured, Neighbours, Order, Outcome, OwnSpread, Point, Trade};
+use crate::record::{
+    Clock, Measured, NeighbourLevels, Order, OwnSpread, Point, ReferenceLevel, SettingOutcome, Trade,
+};
 use crate::reference::floor::Floor;
 use crate::reference::richardson::FORMAL_ORDER;
 use std::fmt::Write;
@@ -48,9 +50,9 @@ pub fn csv(trade: &Trade) -> String {
     for (i, p) in trade.points.iter().enumerate() {
         let m = p.measured();
         let outcome = match &p.outcome {
-            Outcome::Measured(_) => "measured".to_owned(),
-            Outcome::Failed { code, .. } => code.clone(),
-            Outcome::OverLimit { .. } => "over_limit".to_owned(),
+            SettingOutcome::Measured(_) => "measured".to_owned(),
+            SettingOutcome::Failed { code, .. } => code.clone(),
+            SettingOutcome::OverLimit { .. } => "over_limit".to_owned(),
         };
         let figure =
             |(_, of): &Column| m.and_then(of).map_or_else(String::new, |x| to_digits(x, DIGITS).to_string());
@@ -143,7 +145,7 @@ pub fn reference(trade: &Trade) -> Vec<String> {
     lines
 }
 
-fn level(k: usize, l: &Level) -> String {
+fn level(k: usize, l: &ReferenceLevel) -> String {
     let moved = match (l.moved_mm, l.displaced_mm) {
         (Some(m), Some(d)) => format!(
             ", moved by {:.2} mm (mean), {:.2} mm (95 %), {:.2} mm (worst); displaced by {:.2} mm (mean)",
@@ -177,7 +179,7 @@ fn spread(s: &OwnSpread) -> String {
     )
 }
 
-fn neighbours(n: &Neighbours) -> String {
+fn neighbours(n: &NeighbourLevels) -> String {
     let worst = n.p95().map_or_else(|| "none ran".into(), |p| format!("95 % within {p:.2} mm in the worst"));
     let failed = if n.failed.is_empty() { String::new() } else { format!(", {} failed", n.failed.len()) };
     format!("a fiftieth finer and coarser than level {}: {worst}{failed}", n.level)
@@ -195,11 +197,13 @@ fn line(trade: &Trade, i: usize) -> String {
     let p = &trade.points[i];
     let (number, setting) = (i + 1, setting_of(trade, p));
     match &p.outcome {
-        Outcome::Measured(m) => format!("{number:>3}{} {}  {setting}", mark(trade, i, m), figures(m)),
-        Outcome::Failed { message, .. } => {
+        SettingOutcome::Measured(m) => format!("{number:>3}{} {}  {setting}", mark(trade, i, m), figures(m)),
+        SettingOutcome::Failed { message, .. } => {
             format!("{number:>3}  {setting}: fails: {}", message.lines().next().unwrap_or(""))
         }
-        Outcome::OverLimit { seconds } => format!("{number:>3}  {setting}: stopped after {seconds:.0} s"),
+        SettingOutcome::OverLimit { seconds } => {
+            format!("{number:>3}  {setting}: stopped after {seconds:.0} s")
+        }
     }
 }
 

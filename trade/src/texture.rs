@@ -3,12 +3,12 @@
 //! Colours are read from the textures without light, so that neither folds nor the camera count.
 //! Limit: a panel without a texture has its material's one colour.
 
-use crate::surface::{Spot, Surface, pairs};
+use crate::surface::{ClothPoint, DrapedSurface, pairs};
 use toile_core::artifact::{Mesh, Model};
 
 /// Root mean square difference in grey levels (0 to 255) over the surface; none where a panel is
 /// missing in a model.
-pub(crate) fn difference(a: (&Surface<'_>, &Model), b: (&Surface<'_>, &Model)) -> Option<f64> {
+pub(crate) fn difference(a: (&DrapedSurface<'_>, &Model), b: (&DrapedSurface<'_>, &Model)) -> Option<f64> {
     let pairs = pairs(a.0, b.0);
     let squares: Option<Vec<f64>> = pairs
         .iter()
@@ -21,7 +21,7 @@ pub(crate) fn difference(a: (&Surface<'_>, &Model), b: (&Surface<'_>, &Model)) -
     Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-fn colour((surface, model): (&Surface<'_>, &Model), spot: &Spot) -> Option<[f64; 3]> {
+fn colour((surface, model): (&DrapedSurface<'_>, &Model), spot: &ClothPoint) -> Option<[f64; 3]> {
     let garment = surface.garment;
     let panel = garment.panels.iter().find(|p| p.triangles.contains(&spot.triangle))?;
     let mesh = model.meshes.iter().find(|m| m.name == panel.name)?;

@@ -1,8 +1,8 @@
 //! What is written: `certificate.json`, and its words for people.
 
-use crate::compare::Difference;
-use crate::judge::{Check, Judgement, Verdict, coordinates};
-use crate::seams::Gap;
+use crate::compare::GarmentDifference;
+use crate::judge::{FigureCheck, Judgement, Verdict, coordinates};
+use crate::seams::SeamGap;
 use crate::strain::PanelStrain;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ const REST: &str =
 
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Input {
+pub struct InputFile {
     /// What it was read as: `garment`, `body`, `pattern`, `seams`, `flat` or `compared`.
     pub role: &'static str,
     /// Its path as it was named.
@@ -28,7 +28,7 @@ pub struct Input {
     pub bytes: usize,
 }
 
-impl Input {
+impl InputFile {
     /// Of a file's bytes.
     #[must_use]
     pub fn of(role: &'static str, file: &str, bytes: &[u8]) -> Self {
@@ -42,13 +42,13 @@ pub struct Certificate {
     certificate: u32,
     /// `holds` or `fails`.
     pub verdict: Verdict,
-    inputs: Vec<Input>,
+    inputs: Vec<InputFile>,
     vertices: usize,
     triangles: usize,
     /// The checks.
-    pub checks: Vec<Check>,
+    pub checks: Vec<FigureCheck>,
     panels: BTreeMap<String, PanelStrain>,
-    seams: Vec<Gap>,
+    seams: Vec<SeamGap>,
     unmeasured_seams: BTreeMap<String, String>,
     girths: BTreeMap<String, GirthFigures>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,15 +65,20 @@ pub struct Compared {
     /// `holds` or `fails`, by its own checks.
     pub verdict: Verdict,
     /// Its checks.
-    pub checks: Vec<Check>,
+    pub checks: Vec<FigureCheck>,
     /// Between the two.
-    pub difference: Difference,
+    pub difference: GarmentDifference,
 }
 
 impl Certificate {
     /// Of a judgement; a garment that is compared must hold, too.
     #[must_use]
-    pub fn new(inputs: Vec<Input>, found: Judgement, compared: Option<Compared>, notes: Vec<String>) -> Self {
+    pub fn new(
+        inputs: Vec<InputFile>,
+        found: Judgement,
+        compared: Option<Compared>,
+        notes: Vec<String>,
+    ) -> Self {
         let verdict = verdict(&found, compared.as_ref());
         Self {
             certificate: VERSION,
@@ -142,7 +147,7 @@ fn verdict(found: &Judgement, compared: Option<&Compared>) -> Verdict {
 impl Compared {
     /// Of the second garment's judgement.
     #[must_use]
-    pub fn new(found: Judgement, difference: Difference) -> Self {
+    pub fn new(found: Judgement, difference: GarmentDifference) -> Self {
         Self { verdict: verdict(&found, None), checks: found.checks, difference }
     }
 
@@ -172,7 +177,7 @@ fn millimetres(m: f64) -> String {
     format!("{:.3} mm", m * 1e3)
 }
 
-fn line(c: &Check) -> String {
+fn line(c: &FigureCheck) -> String {
     let shown = |value: f64| match c.unit {
         "m" => millimetres(value),
         "1" => format!("{:.2} %", value * 1e2),

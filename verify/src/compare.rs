@@ -16,7 +16,7 @@ use toile_geometry::{Corners, Vec3};
 
 /// How a panel was compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum By {
+pub enum ComparedBy {
     /// Vertex by vertex.
     #[serde(rename = "vertices")]
     Vertices,
@@ -29,7 +29,7 @@ pub enum By {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PanelDifference {
     /// How it was compared.
-    pub by: By,
+    pub by: ComparedBy,
     /// Median, metres.
     pub p50_m: f64,
     /// 99th percentile, metres.
@@ -42,7 +42,7 @@ pub struct PanelDifference {
 
 /// What differs.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Difference {
+pub struct GarmentDifference {
     /// Panels of both, by name.
     pub panels: BTreeMap<String, PanelDifference>,
     /// Panels of the first alone.
@@ -51,7 +51,7 @@ pub struct Difference {
     pub only_second: Vec<String>,
 }
 
-impl Difference {
+impl GarmentDifference {
     /// The panel that differs most.
     #[must_use]
     pub fn worst(&self) -> Option<(&str, &PanelDifference)> {
@@ -62,18 +62,18 @@ impl Difference {
 
 /// Compares two garments.
 #[must_use]
-pub fn compare(one: &Garment, other: &Garment) -> Difference {
+pub fn compare(one: &Garment, other: &Garment) -> GarmentDifference {
     let named = |g: &Garment, name: &str| g.panels.iter().position(|p| p.name == name);
-    let mut difference = Difference::default();
-    let (first, second) = (Surface::of(one), Surface::of(other));
+    let mut difference = GarmentDifference::default();
+    let (first, second) = (SurfaceTree::of(one), SurfaceTree::of(other));
     for p in &one.panels {
         match named(other, &p.name) {
             None => difference.only_first.push(p.name.clone()),
             Some(k) => {
                 let q = &other.panels[k];
                 let (by, far) = match corresponds(one, p, other, q) {
-                    true => (By::Vertices, vertexwise(one, p, other, q)),
-                    false => (By::Surfaces, [second.far(one, p), first.far(other, q)].concat()),
+                    true => (ComparedBy::Vertices, vertexwise(one, p, other, q)),
+                    false => (ComparedBy::Surfaces, [second.far(one, p), first.far(other, q)].concat()),
                 };
                 difference.panels.extend(summary(by, far).map(|d| (p.name.clone(), d)));
             }
@@ -98,7 +98,7 @@ fn vertexwise(one: &Garment, p: &GarmentPanel, other: &Garment, q: &GarmentPanel
     pairs.map(|(a, b)| ((a - b).norm(), *a)).collect()
 }
 
-fn summary(by: By, far: Vec<(f64, Point3)>) -> Option<PanelDifference> {
+fn summary(by: ComparedBy, far: Vec<(f64, Point3)>) -> Option<PanelDifference> {
     let (max_m, at) = far.iter().copied().reduce(|a, b| if b.0 > a.0 { b } else { a })?;
     let mut sorted: Vec<f64> = far.iter().map(|f| f.0).collect();
     sorted.sort_by(f64::total_cmp);
@@ -107,12 +107,12 @@ fn summary(by: By, far: Vec<(f64, Point3)>) -> Option<PanelDifference> {
 }
 
 /// A garment's triangles in a tree.
-struct Surface {
+struct SurfaceTree {
     corners: Vec<Corners>,
     tree: Bvh<Aabb>,
 }
 
-impl Surface {
+impl SurfaceTree {
     fn of(garment: &Garment) -> Self {
         let corners: Vec<Corners> =
             garment.triangles.iter().map(|t| t.map(|v| garment.positions[v as usize].coords)).collect();

@@ -9,11 +9,11 @@
 mod cut;
 mod flat;
 
-use crate::certificate::{Certificate, Compared, Input};
+use crate::certificate::{Certificate, Compared, InputFile};
 use crate::compare::compare;
 use crate::judge::judge;
-use crate::limits::Limits;
-use crate::subject::{Subject, Wearer};
+use crate::limits::CheckLimits;
+use crate::subject::{Subject, WearerBody};
 use std::path::{Path, PathBuf};
 use toile_body::body_of_mesh;
 use toile_core::artifact::{Body, Pattern, Point3};
@@ -31,7 +31,7 @@ const HEIGHTS: (f64, f64) = (0.5, 2.5);
 
 /// What is asked for.
 #[derive(Debug, Clone, Default)]
-pub struct Asked {
+pub struct AskedFiles {
     /// A garment's file, or the folder of a run.
     pub garment: PathBuf,
     /// A pattern: GarmentCode's JSON, DXF or SVG.
@@ -45,15 +45,15 @@ pub struct Asked {
     /// What a number of the garment's file is in metres; guessed where it is not given.
     pub unit: Option<f64>,
     /// The limits.
-    pub limits: Limits,
+    pub limits: CheckLimits,
 }
 
 /// The certificate of what is asked for, and the folder of the garment.
 ///
 /// # Errors
 /// A file that cannot be read, with its place and a remedy.
-pub fn certify(asked: &Asked) -> Result<(Certificate, PathBuf), StageError> {
-    let mut reader = Reader::default();
+pub fn certify(asked: &AskedFiles) -> Result<(Certificate, PathBuf), StageError> {
+    let mut reader = FileReader::default();
     let pattern = asked.pattern.as_deref().map(|p| reader.pattern(p, asked.seams.as_deref())).transpose()?;
     let body = asked.body.as_deref().map(|p| reader.body(p)).transpose()?;
     let file = garment_file(&asked.garment)?;
@@ -101,18 +101,18 @@ fn unreadable(what: String) -> StageError {
 
 /// Reads files, and keeps note of them.
 #[derive(Debug, Default)]
-struct Reader {
-    inputs: Vec<Input>,
+struct FileReader {
+    inputs: Vec<InputFile>,
     notes: Vec<String>,
 }
 
-impl Reader {
+impl FileReader {
     fn bytes(&mut self, role: &'static str, path: &Path) -> Result<Vec<u8>, StageError> {
         let bytes = toile_core::read_file(path).map_err(|e| {
             unreadable(format!("\"{}\" cannot be read: {e}", path.display()))
                 .hint("look at the path and the file's rights")
         })?;
-        self.inputs.push(Input::of(role, &path.display().to_string(), &bytes));
+        self.inputs.push(InputFile::of(role, &path.display().to_string(), &bytes));
         Ok(bytes)
     }
 
@@ -142,7 +142,7 @@ impl Reader {
         Ok(pattern)
     }
 
-    fn body(&mut self, path: &Path) -> Result<Wearer, StageError> {
+    fn body(&mut self, path: &Path) -> Result<WearerBody, StageError> {
         let bytes = self.bytes("body", path)?;
         let file = path.display().to_string();
         let is_glb = bytes.starts_with(b"glTF");
@@ -162,7 +162,7 @@ impl Reader {
         path: &Path,
         unit: Option<f64>,
         pattern: Option<&Pattern>,
-        body: Option<&Wearer>,
+        body: Option<&WearerBody>,
     ) -> Result<Subject, StageError> {
         let bytes = self.bytes(role, path)?;
         let meshes = file_meshes(&bytes, &path.display().to_string(), unit)?;
@@ -197,7 +197,7 @@ pub fn subject(
     meshes: &FileMeshes,
     pieces: Option<&FlatPieces>,
     pattern: Option<&Pattern>,
-    body: Result<Wearer, String>,
+    body: Result<WearerBody, String>,
 ) -> Subject {
     let mut faults = Vec::new();
     let of_pieces = pieces.and_then(|p| flat::garment_of_pieces(meshes, p).map_err(|e| faults.push(e)).ok());
@@ -228,14 +228,14 @@ fn body_unit(positions: &[Point3], triangles: &[[u32; 3]], file: &str) -> Result
 
 /// The body of a mesh that stands where the garment is.
 #[must_use]
-pub fn wearer(positions: &[Point3], triangles: &[[u32; 3]]) -> Wearer {
+pub fn wearer(positions: &[Point3], triangles: &[[u32; 3]]) -> WearerBody {
     let vertices = positions.iter().map(|p| p.coords).collect();
     let (mesh, _) = obj::repair(obj::Mesh { vertices, triangles: triangles.to_vec() });
     let points: Vec<Point3> = mesh.vertices.into_iter().map(Point3::from).collect();
     match body_of_mesh(points.clone(), mesh.triangles.clone()) {
         Ok((body, missing)) => {
             let why = |part: &str| Err(format!("the body's {part} cannot be found from its shape"));
-            Wearer { body, closed: Ok(()), measured: missing.map_or(Ok(()), why) }
+            WearerBody { body, closed: Ok(()), measured: missing.map_or(Ok(()), why) }
         }
         Err(e) => {
             let body = Body {
@@ -244,7 +244,7 @@ pub fn wearer(positions: &[Point3], triangles: &[[u32; 3]]) -> Wearer {
                 landmarks: std::collections::BTreeMap::new(),
                 measurements: std::collections::BTreeMap::new(),
             };
-            Wearer { body, closed: Err(e.message.clone()), measured: Err(e.message) }
+            WearerBody { body, closed: Err(e.message.clone()), measured: Err(e.message) }
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The checks of a garment.
 
 use crate::laid::{ByPiece, Laid};
-use crate::limits::Limits;
+use crate::limits::CheckLimits;
 use crate::seams::Gaps;
 use crate::strain::{PanelStrain, Strain, strain};
-use crate::subject::{Subject, Wearer, finished};
+use crate::subject::{Subject, WearerBody, finished};
 use crate::{crossings, lay, mesh, seams};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -34,7 +34,7 @@ pub enum Verdict {
 
 /// One figure against its limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Check {
+pub struct FigureCheck {
     /// Its name, such as `self_crossings`.
     pub name: &'static str,
     /// What came of it.
@@ -55,7 +55,7 @@ pub struct Check {
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
     /// The checks.
-    pub checks: Vec<Check>,
+    pub checks: Vec<FigureCheck>,
     /// Strain by panel; empty where the flat shape is not known.
     pub panels: BTreeMap<String, PanelStrain>,
     /// Gaps by seam.
@@ -79,27 +79,27 @@ impl Judgement {
 
     /// The check of that name.
     #[must_use]
-    pub fn check(&self, name: &str) -> Option<&Check> {
+    pub fn check(&self, name: &str) -> Option<&FigureCheck> {
         self.checks.iter().find(|c| c.name == name)
     }
 
     fn judge(&mut self, name: &'static str, value: f64, unit: &'static str, limit: f64, words: String) {
         // What is no number does not hold.
         let verdict = if value <= limit { Verdict::Holds } else { Verdict::Fails };
-        self.checks.push(Check { name, verdict, value: Some(value), unit, limit, words });
+        self.checks.push(FigureCheck { name, verdict, value: Some(value), unit, limit, words });
     }
 
     fn skip(&mut self, names: &[(&'static str, &'static str, f64)], why: &str) {
         for &(name, unit, limit) in names {
             let verdict = Verdict::NotJudged;
-            self.checks.push(Check { name, verdict, value: None, unit, limit, words: why.to_owned() });
+            self.checks.push(FigureCheck { name, verdict, value: None, unit, limit, words: why.to_owned() });
         }
     }
 }
 
 /// Judges a garment.
 #[must_use]
-pub fn judge(subject: &Subject, limits: &Limits) -> Judgement {
+pub fn judge(subject: &Subject, limits: &CheckLimits) -> Judgement {
     let mut garment = subject.garment.clone();
     let mut found = Judgement {
         vertices: garment.positions.len(),
@@ -134,7 +134,7 @@ fn by_piece(laid: &[Option<Laid>]) -> ByPiece<'_> {
 fn on_pattern(
     subject: &Subject,
     garment: &Garment,
-    limits: &Limits,
+    limits: &CheckLimits,
     found: &mut Judgement,
 ) -> Option<Vec<Option<Laid>>> {
     let none = [
@@ -192,7 +192,12 @@ fn triangles(garment: &Garment, flat_known: bool, found: &mut Judgement) {
 }
 
 /// Judges cloth against the body; gives the collider where the body has an inside.
-fn on_body(subject: &Subject, garment: &Garment, limits: &Limits, found: &mut Judgement) -> Option<Collider> {
+fn on_body(
+    subject: &Subject,
+    garment: &Garment,
+    limits: &CheckLimits,
+    found: &mut Judgement,
+) -> Option<Collider> {
     let none = [("body_crossings", "pairs", 0.0), ("body_depth", "m", limits.depth)];
     let wearer = match &subject.body {
         Ok(wearer) => wearer,
@@ -221,7 +226,7 @@ fn on_body(subject: &Subject, garment: &Garment, limits: &Limits, found: &mut Ju
     }
 }
 
-fn collider(wearer: &Wearer) -> Result<Collider, String> {
+fn collider(wearer: &WearerBody) -> Result<Collider, String> {
     wearer.closed.clone()?;
     toile_drape::collide::check_body(&wearer.body).map_err(|e| e.message)?;
     let card = ColliderCard {
@@ -240,7 +245,7 @@ fn gaps(
     subject: &Subject,
     garment: &Garment,
     laid: Option<&[Option<Laid>]>,
-    limits: &Limits,
+    limits: &CheckLimits,
     found: &mut Judgement,
 ) {
     let none = [("seam_gap", "m", limits.gap)];
@@ -265,7 +270,7 @@ fn strains(
     subject: &Subject,
     garment: &Garment,
     collider: Option<&Collider>,
-    limits: &Limits,
+    limits: &CheckLimits,
     found: &mut Judgement,
 ) {
     let none = [

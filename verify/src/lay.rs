@@ -9,7 +9,7 @@
 //! another shape than every piece is not laid.
 
 use crate::laid::{ByPiece, Laid};
-use crate::limits::Limits;
+use crate::limits::CheckLimits;
 use crate::{loops, seams};
 use nalgebra::{Isometry2, Translation2, UnitComplex, Vector2};
 use rayon::prelude::*;
@@ -31,14 +31,14 @@ const UNLIKE: f64 = 0.03;
 const LENGTHS: f64 = 0.05;
 
 /// A piece's outline as points, and where its corners are among them.
-struct Outline {
+struct PieceOutline {
     points: Vec<Point2>,
     corners: Vec<usize>,
     /// Corners and every few points between.
     few: Vec<Point2>,
 }
 
-impl Outline {
+impl PieceOutline {
     fn of(piece: &Piece) -> Self {
         let (points, corners) = piece.outer.points();
         let is_kept = |k: &usize| k.is_multiple_of(EVERY) || corners.contains(k);
@@ -49,13 +49,13 @@ impl Outline {
 
 /// Each panel on its piece, in the order of the panels; none where no piece fits.
 #[must_use]
-pub fn lay(garment: &Garment, pattern: &Pattern, limits: &Limits) -> Vec<Option<Laid>> {
-    let outlines: Vec<Outline> = pattern.pieces.iter().map(Outline::of).collect();
+pub fn lay(garment: &Garment, pattern: &Pattern, limits: &CheckLimits) -> Vec<Option<Laid>> {
+    let outlines: Vec<PieceOutline> = pattern.pieces.iter().map(PieceOutline::of).collect();
     let candidates: Vec<Vec<Laid>> = (0..garment.panels.len())
         .into_par_iter()
         .map(|k| candidates(garment, k, pattern, &outlines, limits))
         .collect();
-    let search = Search { garment, pattern, candidates: &candidates };
+    let search = LaySearch { garment, pattern, candidates: &candidates };
     let mut chosen = search.grown();
     search.improve(&mut chosen);
     let pick = |(k, c): (usize, &Option<usize>)| c.map(|c| candidates[k][c].clone());
@@ -67,8 +67,8 @@ fn candidates(
     garment: &Garment,
     panel: usize,
     pattern: &Pattern,
-    outlines: &[Outline],
-    limits: &Limits,
+    outlines: &[PieceOutline],
+    limits: &CheckLimits,
 ) -> Vec<Laid> {
     let own = &garment.panels[panel];
     let flat: Vec<Point2> = own.boundary.iter().map(|v| garment.rest[*v as usize]).collect();
@@ -189,14 +189,14 @@ fn closest(p: &Point2, ring: &[Point2]) -> Point2 {
 }
 
 /// The farthest that either of two closed outlines is from the other, metres.
-fn deviation(placed: &[Point2], outline: &Outline) -> f64 {
+fn deviation(placed: &[Point2], outline: &PieceOutline) -> f64 {
     let to = |p: &Point2, ring: &[Point2]| (p - closest(p, ring)).norm();
     let out = placed.iter().map(|p| to(p, &outline.points)).fold(0.0, f64::max);
     outline.few.iter().map(|p| to(p, placed)).fold(out, f64::max)
 }
 
 /// The vertices along each edge: between those that are nearest to its ends.
-fn edges(placed: &[Point2], vertices: &[u32], outline: &Outline) -> Vec<Vec<u32>> {
+fn edges(placed: &[Point2], vertices: &[u32], outline: &PieceOutline) -> Vec<Vec<u32>> {
     let nearest = |c: &Point2| {
         let far = |k: &usize| (placed[*k] - c).norm_squared();
         (0..placed.len()).reduce(|a, b| if far(&b) < far(&a) { b } else { a }).unwrap_or(0)
@@ -215,13 +215,13 @@ fn edges(placed: &[Point2], vertices: &[u32], outline: &Outline) -> Vec<Vec<u32>
 type Choice = Vec<Option<usize>>;
 
 /// The search among several ways that fit.
-struct Search<'a> {
+struct LaySearch<'a> {
     garment: &'a Garment,
     pattern: &'a Pattern,
     candidates: &'a [Vec<Laid>],
 }
 
-impl Search<'_> {
+impl LaySearch<'_> {
     fn apart(&self, chosen: &Choice) -> (f64, usize) {
         let of =
             |(k, c): (usize, &Option<usize>)| c.map(|c| &self.candidates[k][c]).map(|l| (l.piece, (k, l)));

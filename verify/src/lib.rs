@@ -33,7 +33,7 @@ pub mod subject;
 #[cfg(test)]
 mod tests;
 
-pub use certificate::{Certificate, Input};
-pub use judge::{Check, Judgement, Verdict, judge};
-pub use limits::Limits;
+pub use certificate::{Certificate, InputFile};
+pub use judge::{FigureCheck, Judgement, Verdict, judge};
+pub use limits::CheckLimits;
 pub use subject::Subject;

@@ -2,7 +2,7 @@
 
 /// Limits of the checks; shares unless a unit is named.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct CheckLimits {
     /// Greatest gap of a seam, metres.
     pub gap: f64,
     /// Greatest way between a panel's flat outline and that of its piece, metres.
@@ -22,7 +22,7 @@ pub struct Limits {
     pub depth: f64,
 }
 
-impl Default for Limits {
+impl Default for CheckLimits {
     fn default() -> Self {
         Self {
             gap: 5e-4,

@@ -12,7 +12,7 @@ const LEAST_QUALITY: f64 = 1e-9;
 
 /// The triangles at fault, by their numbers in the garment; each list ascending.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Faults {
+pub struct MeshFaults {
     /// Without area.
     pub degenerate: Vec<u32>,
     /// With the vertices of one before in their panel.
@@ -28,10 +28,10 @@ pub struct Faults {
 
 /// Finds them.
 #[must_use]
-pub fn faults(garment: &Garment, flat_known: bool) -> Faults {
+pub fn faults(garment: &Garment, flat_known: bool) -> MeshFaults {
     let welded: Vec<[u32; 3]> =
         garment.triangles.iter().map(|t| t.map(|v| garment.weld[v as usize])).collect();
-    let mut found = Faults::default();
+    let mut found = MeshFaults::default();
     for panel in &garment.panels {
         // The corner of a pocket may be sewn onto a triangle of what it lies on.
         let mut seen = BTreeSet::new();

@@ -18,7 +18,7 @@ const EASE: f64 = 0.03;
 
 /// A seam that was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Gap {
+pub struct SeamGap {
     /// Its name.
     pub name: String,
     /// The greatest distance, metres.
@@ -31,7 +31,7 @@ pub struct Gap {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gaps {
     /// Those that were measured.
-    pub seams: Vec<Gap>,
+    pub seams: Vec<SeamGap>,
     /// Those that were not, with the reason.
     pub unmeasured: Vec<(String, String)>,
 }
@@ -110,7 +110,7 @@ fn of_seam(
     pattern: &Pattern,
     laid: &ByPiece<'_>,
     seam: &PatternSeam,
-) -> Result<Option<Gap>, String> {
+) -> Result<Option<SeamGap>, String> {
     match seam.kind {
         SeamKind::Pleat(_) => return Err("the layers of a pleat are folded, not laid edge on edge".into()),
         SeamKind::Elastic { .. } if seam.sides.len() < 2 => return Err("it is a band on one edge".into()),
@@ -161,9 +161,9 @@ fn chain(pattern: &Pattern, laid: &ByPiece<'_>, side: &[EdgeUse]) -> Result<Vec<
     if vertices.is_empty() { Err("it has no edge".into()) } else { Ok(vertices) }
 }
 
-fn widest(name: &str, far: impl Iterator<Item = (f64, Point3)>) -> Option<Gap> {
+fn widest(name: &str, far: impl Iterator<Item = (f64, Point3)>) -> Option<SeamGap> {
     let (gap_m, at) = far.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
-    Some(Gap { name: name.to_owned(), gap_m, at: at.coords.into() })
+    Some(SeamGap { name: name.to_owned(), gap_m, at: at.coords.into() })
 }
 
 /// Distance of a point to a polyline.

@@ -23,14 +23,14 @@ pub struct Subject {
     /// The pattern.
     pub pattern: Option<Pattern>,
     /// The body.
-    pub body: Result<Wearer, String>,
+    pub body: Result<WearerBody, String>,
     /// What is wrong between the files, a sentence each: each is a failure.
     pub faults: Vec<String>,
 }
 
 /// The body, and what of it is known.
 #[derive(Debug, Clone)]
-pub struct Wearer {
+pub struct WearerBody {
     /// The mesh; its landmarks are empty where they could not be found.
     pub body: Body,
     /// Whether inside and outside can be told.
@@ -41,7 +41,7 @@ pub struct Wearer {
 
 /// One panel's triangles in a file.
 #[derive(Debug, Clone)]
-pub struct Cut {
+pub struct PanelTriangles {
     /// Its name.
     pub name: String,
     /// Corners by the file's vertices.
@@ -53,7 +53,7 @@ pub struct Cut {
 /// The garment of panels cut from a file's mesh: a vertex of a panel is a vertex of the file at one
 /// flat place.
 #[must_use]
-pub fn garment_of(positions: &[Point3], cuts: &[Cut]) -> Garment {
+pub fn garment_of(positions: &[Point3], cuts: &[PanelTriangles]) -> Garment {
     let mut garment = bare();
     let fabric = Arc::new(unknown_fabric());
     for cut in cuts {

@@ -5,7 +5,7 @@ use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum Bench {
+pub(crate) enum BenchCommand {
     /// What stages take at several edge lengths and photo sizes, and how well that is predicted
     Costs(CostsArgs),
 }

@@ -9,7 +9,7 @@ mod shared;
 mod trade;
 mod verify;
 
-pub(crate) use bench::{Bench, CostsArgs};
+pub(crate) use bench::{BenchCommand, CostsArgs};
 pub(crate) use file::{
     AcceptArgs, CheckArgs, DoctorArgs, LockArgs, MigrateArgs, NewStageArgs, ValidateArgs, Verb,
 };
@@ -112,6 +112,6 @@ pub(crate) enum Command {
     /// Measure what stages take
     Bench {
         #[command(subcommand)]
-        what: Bench,
+        what: BenchCommand,
     },
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use toile_core::Length;
 use toile_pipeline::Override;
 use toile_trade::knobs::slot::ReferenceValue;
-use toile_trade::qualities::Asked;
+use toile_trade::qualities::AskedQuality;
 
 #[derive(Debug, Args)]
 pub(crate) struct TradeArgs {
@@ -91,7 +91,7 @@ pub(crate) struct TuneArgs {
     /// Instead: the quickest setting for each of several errors, like "Draft=10 mm", written as the
     /// pipeline's named qualities; may be given again
     #[arg(long = "quality", value_name = "NAME=LENGTH", conflicts_with_all = ["max_error", "max_time"])]
-    pub(crate) qualities: Vec<Asked>,
+    pub(crate) qualities: Vec<AskedQuality>,
     /// Folder of `toile trade` to pick from [default: measure now, in out/NAME-trade]
     #[arg(long, value_name = "DIR")]
     pub(crate) from: Option<PathBuf>,

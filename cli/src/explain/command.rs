@@ -4,13 +4,13 @@ use crate::args::ExplainArgs;
 use crate::explain::json::json;
 use crate::explain::words::Explained;
 use crate::failing::fail_run;
-use crate::trading::costs::Known;
+use crate::trading::costs::KnownCosts;
 use crate::trading::measuring::{default_folder, failed, opened, quality};
-use crate::validate::{Stood, quality_words, standings};
+use crate::validate::{JudgedQuality, quality_words, standings};
 use crate::{Streams, exit};
 use std::path::Path;
 use toile_core::{Feed, Node, Registry, StageError};
-use toile_pipeline::decide::{Decided, decisions};
+use toile_pipeline::decide::{StageDecision, decisions};
 use toile_pipeline::{Pipeline, RunError, RunOptions, plan};
 use toile_trade::ablate::Ablation;
 use toile_trade::cost::{Forecast, forecast_lines, predict};
@@ -32,7 +32,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
         Ok(ablation) => ablation,
         Err(e) => return failed(&e, streams),
     };
-    let known = Known::of(&args.cache, args.threads);
+    let known = KnownCosts::of(&args.cache, args.threads);
     known.warning().iter().for_each(|warning| streams.warn(warning));
     let (costs, ablation) = (known.costs(), ablation.as_ref());
     let told = told(&Evidence { source: &source, pipeline: &pipeline, costs, ablation }, decided);
@@ -46,7 +46,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
     exit::DONE
 }
 
-type Planned = (Vec<Option<String>>, Vec<Decided>);
+type Planned = (Vec<Option<String>>, Vec<StageDecision>);
 
 fn planned(args: &ExplainArgs, pipeline: &Pipeline) -> Result<Planned, RunError> {
     let options = RunOptions { until: args.until.clone(), ..RunOptions::default() };
@@ -99,7 +99,7 @@ fn lines(explained: &Explained<'_>) -> Vec<String> {
 }
 
 /// `vest: 14 stages, quality Draft; qualities: Draft (10 mm), Fine (2 mm)`.
-fn title(pipeline: &Pipeline, qualities: &[Stood]) -> String {
+fn title(pipeline: &Pipeline, qualities: &[JudgedQuality]) -> String {
     let chosen = pipeline.quality.as_ref().map_or_else(String::new, |q| format!(", quality {q}"));
     let words = quality_words(qualities);
     let known = if words.is_empty() { words } else { format!("; qualities: {words}") };

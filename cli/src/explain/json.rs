@@ -1,7 +1,7 @@
 //! `toile explain --json`: one object, described in docs/reference/costs.md.
 
 use crate::explain::words::Explained;
-use crate::validate::Stood;
+use crate::validate::JudgedQuality;
 use serde_json::{Value, json};
 use toile_core::cost::Predicted;
 use toile_core::{Feed, Node};
@@ -51,7 +51,7 @@ fn stage(pipeline: &Pipeline, node: &Node, skipped: Option<&str>, forecast: &For
     })
 }
 
-fn quality(Stood { quality, standing, now }: &Stood) -> Value {
+fn quality(JudgedQuality { quality, standing, now }: &JudgedQuality) -> Value {
     let set: Vec<String> = quality.set.iter().map(|o| format!("{}={}", o.path, o.value)).collect();
     let digest = |basis: &Option<Basis>| basis.as_ref().map(Basis::to_string);
     json!({ "name": quality.name, "max_error_m": quality.max_error.metres(), "set": set, "measured": quality.measured,

@@ -1,6 +1,6 @@
 //! What `toile explain` says of a pipeline.
 
-use crate::validate::Stood;
+use crate::validate::JudgedQuality;
 use toile_pipeline::Pipeline;
 use toile_trade::cost::Forecast;
 use toile_trade::decided::Told;
@@ -9,7 +9,7 @@ use toile_trade::decided::Told;
 pub(crate) struct Explained<'a> {
     pub(crate) pipeline: &'a Pipeline,
     /// Its qualities with what their claims are worth.
-    pub(crate) qualities: Vec<Stood>,
+    pub(crate) qualities: Vec<JudgedQuality>,
     /// For each stage `None` where it runs, or why it is left out.
     pub(crate) plan: Vec<Option<String>>,
     /// What each stage is expected to take.

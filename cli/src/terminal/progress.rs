@@ -11,7 +11,7 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 use toile_core::{Event, Listener, Remarks, StageError};
 use toile_pipeline::Pipeline;
-use toile_trade::ablate::Progress;
+use toile_trade::ablate::AblationProgress;
 
 /// Steps of the bar a stage.
 const STEPS: u64 = 100;
@@ -97,17 +97,17 @@ pub(crate) fn with_budget<T: Send>(
 pub(crate) fn with_runs<T: Send>(
     threads: Option<u16>,
     streams: &mut Streams<'_>,
-    work: impl FnOnce(&mut dyn FnMut(Progress)) -> Result<T, StageError> + Send,
+    work: impl FnOnce(&mut dyn FnMut(AblationProgress)) -> Result<T, StageError> + Send,
 ) -> Result<T, StageError> {
     let bar = measuring(1, "{spinner} {elapsed:>4} {pos} of {len} runs [{bar:28}] {wide_msg}", streams);
     shown(&bar, threads, streams, at, work)
 }
 
 /// Puts the bar where a measurement is; gives the line to show.
-fn at(bar: &ProgressBar, progress: Progress) -> String {
+fn at(bar: &ProgressBar, progress: AblationProgress) -> String {
     match progress {
-        Progress::Note(line) => line,
-        Progress::Run(step) => {
+        AblationProgress::Note(line) => line,
+        AblationProgress::Run(step) => {
             bar.set_length(step.all as u64);
             bar.set_position(step.done as u64);
             step.to_string()
@@ -176,15 +176,15 @@ fn shown<T: Send, M: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_trade::ablate::Step;
+    use toile_trade::ablate::RunStep;
 
     #[test]
     fn an_ablation_shows_runs_done_of_runs_to_do() {
         let bar = ProgressBar::hidden();
-        let line = at(&bar, Progress::Run(Step { done: 3, all: 12, what: "as decided".into() }));
+        let line = at(&bar, AblationProgress::Run(RunStep { done: 3, all: 12, what: "as decided".into() }));
         assert_eq!((bar.position(), bar.length()), (3, Some(12)));
         assert_eq!(line, "run 4 of 12: as decided");
-        assert_eq!(at(&bar, Progress::Note("goes on".into())), "goes on");
+        assert_eq!(at(&bar, AblationProgress::Note("goes on".into())), "goes on");
         assert_eq!(bar.position(), 3);
     }
 }

@@ -7,7 +7,7 @@ use crate::{Streams, exit, terminal::interrupt};
 use std::path::Path;
 use toile_core::StageError;
 use toile_pipeline::{Pipeline, write_files};
-use toile_trade::ablate::{Ablation, Options, ablate, files, lines};
+use toile_trade::ablate::{Ablation, AblationOptions, ablate, files, lines};
 use toile_trade::knobs::source::Source;
 
 /// Measures, writes the files and prints the table.
@@ -18,7 +18,7 @@ pub(crate) fn run(
     streams: &mut Streams<'_>,
 ) -> u8 {
     let folder = || default_folder(&args.pipeline, quality(&args.overrides), "ablation");
-    let options = Options {
+    let options = AblationOptions {
         out: args.out.clone().unwrap_or_else(folder),
         repeats: args.study.repeats,
         budget: args.study.budget,

@@ -14,8 +14,8 @@ use toile_core::artifact::OutputFile;
 use toile_core::{Listener, Registry};
 use toile_pipeline::{Override, Pipeline, RunError, RunOptions, run, write_files};
 use toile_trade::cost::{
-    Collection, CostRecord, Costs, Figure, Variation, check, check_lines, note, parse_collection, shortest,
-    variations,
+    Collection, CostFigure, CostRecord, Costs, Variation, check, check_lines, note, parse_collection,
+    shortest, variations,
 };
 
 /// Where a run's own process leaves its records, in the folder of photos of other sizes.
@@ -40,7 +40,7 @@ pub(crate) fn costs(args: &CostsArgs, registry: &Registry, streams: &mut Streams
     }
     streams.say(format!("{} runs of stages on {}", collection.records.len(), collection.host));
     if args.check {
-        for figure in Figure::ALL {
+        for figure in CostFigure::ALL {
             check_lines(&check(&collection.records, &args.without, figure))
                 .iter()
                 .for_each(|l| streams.say(l));

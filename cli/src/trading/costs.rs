@@ -8,15 +8,15 @@ use toile_core::cost::{Predicted, Size};
 use toile_pipeline::cost::{Expect, StageCost};
 use toile_pipeline::{Metrics, Pipeline};
 use toile_trade::cost::{
-    Collection, CostStore, Costs, Host, MemoryCount, Opened, Stopwatch, beside as lines, forecast, note,
-    shipped, sizes,
+    Collection, CostStore, Costs, HostMachine, MemoryCount, Opened, Stopwatch, beside as lines, forecast,
+    note, shipped, sizes,
 };
 
 /// What is known of this machine's runs; read, and fitted, when it is first asked for.
 #[derive(Debug)]
-pub(crate) struct Known {
+pub(crate) struct KnownCosts {
     store: Option<CostStore>,
-    host: Host,
+    host: HostMachine,
     threads: usize,
     opened: OnceLock<Opened>,
     shipped: OnceLock<Collection>,
@@ -25,15 +25,15 @@ pub(crate) struct Known {
     sizes: OnceLock<Vec<Size>>,
 }
 
-impl Known {
+impl KnownCosts {
     /// Of the store in the cache's folder; without a cache what is shipped counts alone.
     pub(crate) fn of(choice: &CacheChoice, threads: Option<u16>) -> Self {
         let cache = if choice.no_cache { None } else { cache::at(choice.cache_dir.clone()) };
-        let host = Host::here();
+        let host = HostMachine::here();
         let threads = threads.map_or(host.cores, usize::from).min(host.cores);
         let store = cache.map(|c| CostStore::new(c.folder()));
         let (opened, shipped) = (OnceLock::new(), OnceLock::new());
-        Known { store, host, threads, opened, shipped, costs: OnceLock::new(), sizes: OnceLock::new() }
+        KnownCosts { store, host, threads, opened, shipped, costs: OnceLock::new(), sizes: OnceLock::new() }
     }
 
     /// What is wrong with the store.
@@ -75,7 +75,7 @@ impl Known {
     }
 }
 
-impl Expect for Known {
+impl Expect for KnownCosts {
     fn expected(&self, pipeline: &Pipeline, node: usize) -> Option<Predicted> {
         let sizes = self.sizes.get_or_init(|| sizes(pipeline, self.costs()));
         Some(forecast(pipeline, self.costs(), node, sizes.get(node)?.clone())?.predicted)
@@ -92,7 +92,7 @@ pub(crate) fn stopwatch() -> Stopwatch {
 }
 
 /// Prediction beside fact, for people.
-pub(crate) fn beside(metrics: &Metrics, known: &Known) -> Vec<String> {
+pub(crate) fn beside(metrics: &Metrics, known: &KnownCosts) -> Vec<String> {
     let both = |s: &toile_pipeline::StageMetrics| Some((s.id.clone(), s.used?, s.predicted?));
     let stages: Vec<_> = metrics.stages.iter().filter_map(both).collect();
     let mut lines = lines(

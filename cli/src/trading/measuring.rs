@@ -3,7 +3,7 @@
 
 use crate::args::Overrides;
 use crate::failing::{fail_load, fail_run};
-use crate::validate::{Refused, inspect, open};
+use crate::validate::{RefusedPipeline, inspect, open};
 use crate::{Streams, at_hand, exit, terminal::interrupt, terminal::stdin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,8 +45,8 @@ pub(crate) fn inspected(
     streams: &mut Streams<'_>,
 ) -> Result<(), u8> {
     inspect(pipeline, &RunOptions { until, ..RunOptions::default() }).map_err(|refused| match refused {
-        Refused::Run(e) => fail_run(pipeline, &e, false, streams),
-        Refused::File(faults) => fail_load(&faults, false, streams),
+        RefusedPipeline::Run(e) => fail_run(pipeline, &e, false, streams),
+        RefusedPipeline::File(faults) => fail_load(&faults, false, streams),
     })
 }
 

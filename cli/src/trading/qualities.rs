@@ -12,10 +12,10 @@ use toile_core::StageError;
 use toile_pipeline::Pipeline;
 use toile_trade::knobs::slot::setting_words;
 use toile_trade::knobs::source::Source;
-use toile_trade::qualities::{Asked, Proved, prove, written};
+use toile_trade::qualities::{AskedQuality, Proved, prove, written};
 use toile_trade::record::{Clock, Trade, today};
 use toile_trade::table;
-use toile_trade::tune::{Proof, Prover};
+use toile_trade::tune::{Prover, SettingProof};
 
 /// Proves each quality, writes those that are kept, and refuses the others with the front.
 pub(crate) fn run(
@@ -33,8 +33,8 @@ pub(crate) fn run(
     }
 }
 
-fn given_twice(asked: &[Asked]) -> Option<&str> {
-    let is_again = |(i, a): &(usize, &Asked)| asked[..*i].iter().any(|b| b.name == a.name);
+fn given_twice(asked: &[AskedQuality]) -> Option<&str> {
+    let is_again = |(i, a): &(usize, &AskedQuality)| asked[..*i].iter().any(|b| b.name == a.name);
     asked.iter().enumerate().find(is_again).map(|(_, a)| a.name.as_str())
 }
 
@@ -91,8 +91,8 @@ fn refuse(proved: &Proved, trade: &Trade, streams: &mut Streams<'_>) -> u8 {
 }
 
 fn record(proved: &Proved, trade: &Trade, file: &Path) -> Value {
-    let millimetres = |a: &Asked| a.wish().max_error_mm;
-    let kept = |(a, proof): &(Asked, Proof)| {
+    let millimetres = |a: &AskedQuality| a.wish().max_error_mm;
+    let kept = |(a, proof): &(AskedQuality, SettingProof)| {
         let (point, fresh) = (&trade.points[proof.point], &proof.fresh);
         json!({
             "name": a.name, "max_error_mm": millimetres(a), "kept_mm": proof.worst_mm(),
@@ -101,7 +101,7 @@ fn record(proved: &Proved, trade: &Trade, file: &Path) -> Value {
             "starts_p95_mm": proof.starts.iter().map(|m| m.p95).collect::<Vec<_>>(),
         })
     };
-    let refused = |(a, e): &(Asked, StageError)| json!({ "name": a.name, "max_error_mm": millimetres(a), "error": e.to_string(), "hint": e.hint });
+    let refused = |(a, e): &(AskedQuality, StageError)| json!({ "name": a.name, "max_error_mm": millimetres(a), "error": e.to_string(), "hint": e.hint });
     let file = (!proved.kept.is_empty()).then(|| file.display().to_string());
     json!({
         "file": file,

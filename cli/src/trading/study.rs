@@ -11,7 +11,7 @@ use toile_trade::knobs::default_knobs::default_knobs;
 use toile_trade::knobs::knob::KnobSpec;
 use toile_trade::knobs::source::Source;
 use toile_trade::record::{Clock, Trade};
-use toile_trade::study::{Options, study};
+use toile_trade::study::{StudyOptions, study};
 use toile_trade::table;
 
 /// Measures, writes the files of the measurement and prints its table.
@@ -26,7 +26,7 @@ pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'
     if args.ablate {
         return ablate::run(args, &source, &pipeline, streams);
     }
-    let asked = Asked {
+    let asked = StudyRequest {
         knobs: &args.knobs,
         out: args
             .out
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'
 }
 
 /// What a measurement takes from the command line.
-pub(crate) struct Asked<'a> {
+pub(crate) struct StudyRequest<'a> {
     pub(crate) knobs: &'a [String],
     pub(crate) out: PathBuf,
     pub(crate) until: Option<String>,
@@ -64,7 +64,7 @@ pub(crate) struct Asked<'a> {
 
 /// Measures and writes; progress goes to standard error.
 pub(crate) fn measured(
-    asked: &Asked<'_>,
+    asked: &StudyRequest<'_>,
     source: &Source<'_>,
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,
@@ -77,7 +77,7 @@ pub(crate) fn measured(
         let message = "the pipeline has no knob that is turned by itself";
         return Err(StageError::invalid(message).hint("name some, like `--knob \"mesher.edge=6..24 mm\"`"));
     }
-    let options = Options {
+    let options = StudyOptions {
         out: asked.out.clone(),
         budget: asked.study.budget(),
         limit: asked.study.limit,

@@ -13,7 +13,7 @@ use toile_trade::knobs::slot::setting_words;
 use toile_trade::knobs::source::Source;
 use toile_trade::record::{Clock, Trade, today};
 use toile_trade::table;
-use toile_trade::tune::{Proof, Prover, Wish, refusal};
+use toile_trade::tune::{Prover, SettingProof, Wish, refusal};
 
 /// Picks, proves, writes.
 pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -70,7 +70,14 @@ fn tuned(
     Ok(())
 }
 
-fn say(args: &TuneArgs, trade: &Trade, wish: &Wish, proof: &Proof, file: &Path, streams: &mut Streams<'_>) {
+fn say(
+    args: &TuneArgs,
+    trade: &Trade,
+    wish: &Wish,
+    proof: &SettingProof,
+    file: &Path,
+    streams: &mut Streams<'_>,
+) {
     let point = &trade.points[proof.point];
     let (fresh, d) = (&proof.fresh, &proof.fresh.errors.distance_mm);
     let starts: Vec<f64> = proof.starts.iter().map(|m| m.p95).collect();

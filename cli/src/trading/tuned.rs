@@ -4,7 +4,7 @@ use crate::Streams;
 use crate::args::TuneArgs;
 use crate::terminal::interrupt;
 use crate::trading::measuring::default_folder;
-use crate::trading::study::{Asked, measured};
+use crate::trading::study::{StudyRequest, measured};
 use std::path::{Path, PathBuf};
 use toile_core::StageError;
 use toile_core::artifact::OutputFile;
@@ -32,7 +32,7 @@ pub(crate) fn front(
         return Ok((trade, folder.clone()));
     }
     let out = default_folder(&args.pipeline, None, "trade");
-    let asked = Asked {
+    let asked = StudyRequest {
         knobs: &args.knobs,
         out: out.clone(),
         until: None,

@@ -35,7 +35,7 @@ struct ParamArgs {
 
 /// The fields of a struct of parameters.
 #[derive(Default)]
-struct Table {
+struct ParamTable {
     /// The default of each.
     defaults: Vec<TokenStream>,
     /// Their rows, in lists: one of each parameter, all of a group.
@@ -125,7 +125,7 @@ pub(crate) fn expand_group(mut item: ItemStruct) -> syn::Result<TokenStream> {
     })
 }
 
-impl Table {
+impl ParamTable {
     fn default_impl(&self, name: &Ident) -> TokenStream {
         let defaults = &self.defaults;
         quote! {
@@ -166,7 +166,7 @@ impl Table {
     }
 
     fn params(&self, name: &Ident) -> TokenStream {
-        let Table { rows, names, reads, writes, groups, .. } = self;
+        let ParamTable { rows, names, reads, writes, groups, .. } = self;
         quote! {
             impl ::toile_core::param::Params for #name {
                 const NAMES: &'static [&'static str] = {
@@ -223,8 +223,8 @@ fn stage_args(attr: TokenStream) -> syn::Result<StageArgs> {
 }
 
 /// Takes the `#[param]` attributes off the fields.
-fn fields(item: &mut ItemStruct) -> syn::Result<Table> {
-    let mut table = Table::default();
+fn fields(item: &mut ItemStruct) -> syn::Result<ParamTable> {
+    let mut table = ParamTable::default();
     let named = match &mut item.fields {
         Fields::Named(named) => &mut named.named,
         Fields::Unit => {

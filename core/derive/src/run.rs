@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 use syn::{FnArg, GenericArgument, ImplItem, ImplItemFn, ItemImpl, Pat, PathArguments, ReturnType, Type};
 
 /// One artifact argument of `run`.
-struct Port {
+struct ArgumentPort {
     name: String,
     ty: Type,
     original: bool,
@@ -30,13 +30,13 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
     let out = output(run)?;
     renamed(&item)?;
     let hooks = hooks(&item);
-    let in_ports = ports.iter().map(|Port { name, ty, original, sewn }| {
+    let in_ports = ports.iter().map(|ArgumentPort { name, ty, original, sewn }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
             ::toile_core::InPort { name: #name, kind, arity, optional, original: #original, sewn: #sewn }
         }}
     });
-    let takes = ports.iter().enumerate().map(|(i, Port { name, ty, .. })| {
+    let takes = ports.iter().enumerate().map(|(i, ArgumentPort { name, ty, .. })| {
         quote! {
             <#ty as ::toile_core::Input>::take(inputs.0.get(#i).and_then(::std::option::Option::as_ref))
                 .ok_or_else(|| ::toile_core::StageError::internal(concat!("port `", #name, "` got another type")))?
@@ -124,7 +124,7 @@ fn has(item: &ItemImpl, name: &str) -> bool {
 
 /// The arguments between `&self` and the context; `#[original]` and `#[sewn]` are read and taken
 /// off.
-fn ports(run: &mut ImplItemFn) -> syn::Result<Vec<Port>> {
+fn ports(run: &mut ImplItemFn) -> syn::Result<Vec<ArgumentPort>> {
     let count = run.sig.inputs.len();
     let mut ports = Vec::new();
     for (i, arg) in run.sig.inputs.iter_mut().enumerate() {
@@ -141,7 +141,7 @@ fn ports(run: &mut ImplItemFn) -> syn::Result<Vec<Port>> {
         let Pat::Ident(name) = arg.pat.as_ref() else {
             return Err(syn::Error::new_spanned(&arg.pat, "a port needs a name"));
         };
-        ports.push(Port {
+        ports.push(ArgumentPort {
             name: name.ident.to_string().trim_start_matches('_').to_owned(),
             ty: (*arg.ty).clone(),
             original,

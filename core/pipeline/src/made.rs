@@ -5,7 +5,7 @@ use toile_core::{PortValue, Remarks};
 
 /// What one run of a stage gave.
 #[derive(Debug)]
-pub(crate) struct Made {
+pub(crate) struct EntryResult {
     /// The entry of its sets; empty where it is not mapped.
     pub(crate) entry: String,
     pub(crate) outputs: Vec<PortValue>,

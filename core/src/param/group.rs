@@ -26,7 +26,7 @@ pub trait Params: Default {
 /// Reads a stage's parameters; those that are not given have their defaults.
 #[doc(hidden)]
 pub fn read<'de, T: Params, D: Deserializer<'de>>(stage: &'static str, d: D) -> Result<T, D::Error> {
-    d.deserialize_struct(stage, T::NAMES, Fields(stage, PhantomData))
+    d.deserialize_struct(stage, T::NAMES, GroupVisitor(stage, PhantomData))
 }
 
 /// Writes a stage's parameters.
@@ -75,9 +75,9 @@ const fn alike(a: &str, b: &str) -> bool {
     k == a.len() && k == b.len()
 }
 
-struct Fields<T>(&'static str, PhantomData<T>);
+struct GroupVisitor<T>(&'static str, PhantomData<T>);
 
-impl<'de, T: Params> Visitor<'de> for Fields<T> {
+impl<'de, T: Params> Visitor<'de> for GroupVisitor<T> {
     type Value = T;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -86,7 +86,7 @@ impl<'de, T: Params> Visitor<'de> for Fields<T> {
 
     fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<T, M::Error> {
         let (mut params, mut given) = (T::default(), Vec::new());
-        while let Some(name) = map.next_key_seed(Name(T::NAMES))? {
+        while let Some(name) = map.next_key_seed(NameVisitor(T::NAMES))? {
             if given.contains(&name) {
                 return Err(M::Error::duplicate_field(name));
             }
@@ -100,9 +100,9 @@ impl<'de, T: Params> Visitor<'de> for Fields<T> {
 }
 
 /// One of these names.
-struct Name(&'static [&'static str]);
+struct NameVisitor(&'static [&'static str]);
 
-impl<'de> DeserializeSeed<'de> for Name {
+impl<'de> DeserializeSeed<'de> for NameVisitor {
     type Value = &'static str;
 
     fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<&'static str, D::Error> {
@@ -110,7 +110,7 @@ impl<'de> DeserializeSeed<'de> for Name {
     }
 }
 
-impl Visitor<'_> for Name {
+impl Visitor<'_> for NameVisitor {
     type Value = &'static str;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

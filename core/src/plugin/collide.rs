@@ -156,7 +156,7 @@ unsafe extern "C" fn destroy(this: *mut c_void) {
 }
 
 /// A collider of the other side.
-pub struct Foreign {
+pub struct ForeignCollider {
     collider: abi::Collider,
     table: abi::ColliderTable,
     card: ColliderCard,
@@ -167,16 +167,16 @@ pub struct Foreign {
 }
 
 // Its functions may be called from any thread, by the rules of the border.
-unsafe impl Send for Foreign {}
-unsafe impl Sync for Foreign {}
+unsafe impl Send for ForeignCollider {}
+unsafe impl Sync for ForeignCollider {}
 
-impl std::fmt::Debug for Foreign {
+impl std::fmt::Debug for ForeignCollider {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "a collider of {}", self.owner)
     }
 }
 
-impl Drop for Foreign {
+impl Drop for ForeignCollider {
     fn drop(&mut self) {
         if let Some(destroy) = self.table.destroy {
             let _inside = inside(self.owner);
@@ -220,7 +220,7 @@ pub unsafe fn take(
         self_collision: card.self_collision != 0,
         penalty: (!card.penalty.is_nan()).then_some(card.penalty),
     };
-    let foreign = Foreign { collider, table, card, owner, _library: library };
+    let foreign = ForeignCollider { collider, table, card, owner, _library: library };
     Ok(Collider { scheme: Arc::new(foreign), signature })
 }
 
@@ -268,7 +268,7 @@ fn cloth(positions: &[Point3], triangles: &[[u32; 3]]) -> Cloth {
     }
 }
 
-impl Foreign {
+impl ForeignCollider {
     /// Leaves the solver with an error: the trait's functions cannot return one, and a contact that
     /// is missed must not pass for none.
     fn ensure(&self, status: i32, what: &str) {
@@ -295,7 +295,7 @@ impl Foreign {
     }
 }
 
-impl Collide for Foreign {
+impl Collide for ForeignCollider {
     fn card(&self) -> ColliderCard {
         self.card
     }

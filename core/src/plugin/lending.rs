@@ -2,7 +2,7 @@
 //! them is told when the other side needs them no more.
 
 use super::abi;
-use crate::artifact::store::{Kept, Lend};
+use crate::artifact::store::{KeptBytes, Lend};
 use std::any::Any;
 use std::ffi::c_void;
 use std::mem::ManuallyDrop;
@@ -14,9 +14,9 @@ type Keeper = Arc<dyn Any + Send + Sync>;
 /// grows.
 #[derive(Debug, Default)]
 #[allow(clippy::vec_box)]
-pub struct Owners(Vec<Box<abi::Owner>>);
+pub struct ListOwners(Vec<Box<abi::Owner>>);
 
-impl Owners {
+impl ListOwners {
     /// Where the owner lies; good for as long as both live.
     pub fn lend(&mut self, keeper: &Keeper) -> *const abi::Owner {
         let ctx = std::ptr::from_ref(keeper).cast_mut().cast();
@@ -36,10 +36,10 @@ unsafe extern "C" fn release(handle: *mut c_void) {
 
 /// An owner who can be asked to keep a list.
 #[derive(Clone)]
-pub struct Lending(Asked);
+pub struct Lending(ListKeeper);
 
 #[derive(Clone)]
-enum Asked {
+enum ListKeeper {
     /// The other side.
     Foreign(abi::Owner),
     /// Memory that this side gave to the other for its output.
@@ -78,20 +78,20 @@ impl Lending {
     /// The owner is there for as long as the result, or any copy of it, is asked.
     pub unsafe fn of(owner: *const abi::Owner) -> Option<Self> {
         let owner = unsafe { owner.as_ref() }?;
-        Some(Lending(Asked::Foreign(*owner)))
+        Some(Lending(ListKeeper::Foreign(*owner)))
     }
 
     /// The owner of a block of this side.
     pub fn block(keeper: Keeper) -> Self {
-        Lending(Asked::Block(keeper))
+        Lending(ListKeeper::Block(keeper))
     }
 }
 
 impl Lend for Lending {
-    fn keep(&self, bytes: &[u8]) -> Option<Kept> {
+    fn keep(&self, bytes: &[u8]) -> Option<KeptBytes> {
         let keeper = match &self.0 {
-            Asked::Block(keeper) => keeper.clone(),
-            Asked::Foreign(owner) => {
+            ListKeeper::Block(keeper) => keeper.clone(),
+            ListKeeper::Foreign(owner) => {
                 let (retain, release) = (owner.retain?, owner.release?);
                 let handle = unsafe { retain(owner.ctx) };
                 (!handle.is_null()).then(|| Arc::new(Handle { handle, release }) as Keeper)?

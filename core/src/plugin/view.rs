@@ -2,8 +2,8 @@
 //! far as a pointer can be.
 
 use super::abi;
-use super::lending::{Lending, Owners};
-use crate::artifact::stored::{Data, Field, MAX_DEPTH, Owner, Record};
+use super::lending::{Lending, ListOwners};
+use crate::artifact::stored::{Data, MAX_DEPTH, MemoryOwner, Record, RecordField};
 use bytemuck::Pod;
 use std::borrow::Cow;
 use std::ffi::c_void;
@@ -15,32 +15,32 @@ const MAX_FIELDS: usize = 1000;
 /// A record in C's form, with the record whose lists it shows.
 #[derive(Debug)]
 pub struct Lent<'a> {
-    views: Views,
+    views: RecordViews,
     /// Its lists lie on the heap or elsewhere, so that they stay where they are when this moves.
     _record: Record<'a>,
 }
 
 /// The views of one record and of all records within.
 #[derive(Debug)]
-struct Views {
+struct RecordViews {
     /// Pointed at from outside; boxed, so that it stays where it is.
     view: Box<abi::Record>,
     _fields: Vec<abi::Field>,
-    _parts: Vec<Part>,
-    _owners: Owners,
+    _parts: Vec<NestedViews>,
+    _owners: ListOwners,
 }
 
 /// The records of one field: kept for their owners, and side by side for C.
 #[derive(Debug)]
-struct Part {
-    _owners: Vec<Views>,
+struct NestedViews {
+    _owners: Vec<RecordViews>,
     _views: Vec<abi::Record>,
 }
 
 impl<'a> Lent<'a> {
     /// Lends a record for as long as the result lives.
     pub fn of(record: Record<'a>) -> Self {
-        Lent { views: Views::of(&record), _record: record }
+        Lent { views: RecordViews::of(&record), _record: record }
     }
 
     /// Where it lies.
@@ -49,17 +49,17 @@ impl<'a> Lent<'a> {
     }
 }
 
-impl Views {
+impl RecordViews {
     fn of(record: &Record<'_>) -> Self {
-        let (mut parts, mut owners) = (Vec::new(), Owners::default());
+        let (mut parts, mut owners) = (Vec::new(), ListOwners::default());
         let fields: Vec<abi::Field> =
             record.fields.iter().map(|f| field(f, &mut parts, &mut owners)).collect();
         let view = Box::new(abi::Record { fields: fields.as_ptr(), count: fields.len() });
-        Views { view, _fields: fields, _parts: parts, _owners: owners }
+        RecordViews { view, _fields: fields, _parts: parts, _owners: owners }
     }
 }
 
-fn field(field: &Field<'_>, parts: &mut Vec<Part>, owners: &mut Owners) -> abi::Field {
+fn field(field: &RecordField<'_>, parts: &mut Vec<NestedViews>, owners: &mut ListOwners) -> abi::Field {
     let (kind, data): (u32, *const c_void) = match &field.data {
         Data::U8(x) => (abi::FIELD_U8, x.as_ptr().cast()),
         Data::U32(x) => (abi::FIELD_U32, x.as_ptr().cast()),
@@ -70,18 +70,18 @@ fn field(field: &Field<'_>, parts: &mut Vec<Part>, owners: &mut Owners) -> abi::
         Data::Records(records) => (abi::FIELD_RECORDS, lend_all(records, parts).cast()),
     };
     let owner = match &field.owner {
-        Owner::Own(own) => owners.lend(own),
+        MemoryOwner::Own(own) => owners.lend(own),
         _ => std::ptr::null(),
     };
     let (name, count) = (abi::Text::of(&field.name), field.data.len());
     abi::Field { name, data, count, kind, width: field.width, owner }
 }
 
-fn lend_all(records: &[Record<'_>], parts: &mut Vec<Part>) -> *const abi::Record {
-    let owners: Vec<Views> = records.iter().map(Views::of).collect();
+fn lend_all(records: &[Record<'_>], parts: &mut Vec<NestedViews>) -> *const abi::Record {
+    let owners: Vec<RecordViews> = records.iter().map(RecordViews::of).collect();
     let views: Vec<abi::Record> = owners.iter().map(|o| *o.view).collect();
     let at = views.as_ptr();
-    parts.push(Part { _owners: owners, _views: views });
+    parts.push(NestedViews { _owners: owners, _views: views });
     at
 }
 
@@ -136,7 +136,7 @@ unsafe fn fields<'a>(view: abi::Record, budget: &mut u64, depth: usize) -> Resul
     Ok(Record { fields: read.collect::<Result<_, _>>()? })
 }
 
-unsafe fn one<'a>(f: &abi::Field, budget: &mut u64, depth: usize) -> Result<Field<'a>, String> {
+unsafe fn one<'a>(f: &abi::Field, budget: &mut u64, depth: usize) -> Result<RecordField<'a>, String> {
     let name = unsafe { text(f.name)? };
     let data = match f.kind {
         abi::FIELD_U8 => Data::U8(unsafe { numbers(f, name, budget)? }),
@@ -156,8 +156,9 @@ unsafe fn one<'a>(f: &abi::Field, budget: &mut u64, depth: usize) -> Result<Fiel
         }
         other => return Err(format!("the field `{name}` has the unknown type {other}")),
     };
-    let owner = unsafe { Lending::of(f.owner) }.map_or(Owner::None, |of| Owner::Foreign(Arc::new(of)));
-    Ok(Field { name: Cow::Borrowed(name), width: f.width, data, owner })
+    let owner =
+        unsafe { Lending::of(f.owner) }.map_or(MemoryOwner::None, |of| MemoryOwner::Foreign(Arc::new(of)));
+    Ok(RecordField { name: Cow::Borrowed(name), width: f.width, data, owner })
 }
 
 unsafe fn numbers<'a, T: Pod>(f: &abi::Field, name: &str, budget: &mut u64) -> Result<Cow<'a, [T]>, String> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 /// A body of capsules: exact, cheap, without the cloth's own contacts.
 #[derive(Debug, Clone)]
-struct Capsules(Vec<(Point3, Point3, f64)>);
+struct CapsuleScheme(Vec<(Point3, Point3, f64)>);
 
 /// A trunk, shoulders and a neck.
 pub fn collider() -> Collider {
@@ -16,10 +16,10 @@ pub fn collider() -> Collider {
         part([0.05, 0.8, 0.0], [0.05, 1.3, 0.0], 0.1),
         part([0.0, 1.4, 0.0], [0.0, 1.6, 0.0], 0.05),
     ];
-    Collider { scheme: Arc::new(Capsules(parts)), signature: "capsules".into() }
+    Collider { scheme: Arc::new(CapsuleScheme(parts)), signature: "capsules".into() }
 }
 
-impl Capsules {
+impl CapsuleScheme {
     fn distance(&self, q: &Point3) -> (f64, Vector3) {
         let one = |(a, b, r): &(Point3, Point3, f64)| {
             let (ab, aq) = (b - a, q - a);
@@ -30,7 +30,7 @@ impl Capsules {
     }
 }
 
-impl Collide for Capsules {
+impl Collide for CapsuleScheme {
     fn card(&self) -> ColliderCard {
         ColliderCard {
             thickness: 1.5e-3,

@@ -1,7 +1,7 @@
 //! One check for each contract.
 
 use super::suite::{cases, default_value, empty_value, has_empty, is_known, large_value};
-use super::trial::{Outcome, Trial};
+use super::trial::{Trial, TrialOutcome};
 use super::{Case, folder, motion, typed};
 use crate::artifact::*;
 use crate::{
@@ -120,7 +120,7 @@ pub fn assert_kept<S: StageType>(contract: Contract) {
 }
 
 /// Counts what was answered, and refuses a check that nothing came through.
-fn tally(outcomes: &[(String, Outcome)]) -> Result<Kept, String> {
+fn tally(outcomes: &[(String, TrialOutcome)]) -> Result<Kept, String> {
     let answered = outcomes.iter().filter(|(_, o)| o.answered()).count();
     match outcomes.first() {
         Some((case, first)) if answered == 0 => {
@@ -131,9 +131,9 @@ fn tally(outcomes: &[(String, Outcome)]) -> Result<Kept, String> {
 }
 
 /// Runs a case; a broken outcome is a fault whatever the contract.
-fn run(trial: &Trial<'_>, case: &Case) -> Result<Outcome, String> {
+fn run(trial: &Trial<'_>, case: &Case) -> Result<TrialOutcome, String> {
     match trial.run(&case.inputs) {
-        Outcome::Broken(fault) => Err(format!("on {}, {fault}", case.name)),
+        TrialOutcome::Broken(fault) => Err(format!("on {}, {fault}", case.name)),
         outcome => Ok(outcome),
     }
 }
@@ -142,7 +142,7 @@ fn run(trial: &Trial<'_>, case: &Case) -> Result<Outcome, String> {
 fn repeated(
     trial: &Trial<'_>,
     cases: &[Case],
-    again: impl Fn(&(dyn Fn() -> Outcome + Sync)) -> Outcome,
+    again: impl Fn(&(dyn Fn() -> TrialOutcome + Sync)) -> TrialOutcome,
 ) -> Result<Kept, String> {
     let mut outcomes = Vec::new();
     for case in cases {
@@ -160,7 +160,7 @@ fn repeated(
 fn thread_invariant(trial: &Trial<'_>, cases: &[Case]) -> Result<Kept, String> {
     let mut outcomes = Vec::new();
     for case in cases {
-        let mut first: Option<(usize, Outcome)> = None;
+        let mut first: Option<(usize, TrialOutcome)> = None;
         for threads in THREADS {
             let pool =
                 rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| e.to_string())?;
@@ -298,11 +298,11 @@ fn same_boundary(before: &Panel, after: &Panel) -> Result<(), String> {
 }
 
 fn refuses_empty(trial: &Trial<'_>, bare: Option<&dyn Stage>, card: &Card) -> Result<Kept, String> {
-    let refused = |outcome: Outcome, what: &str| match outcome {
-        Outcome::Refused(_, message) if !message.is_empty() => Ok(()),
-        Outcome::Refused(..) => Err(format!("it refuses {what} without a word")),
-        Outcome::Broken(fault) => Err(format!("given {what}, {fault}")),
-        Outcome::Answered(_) => Err(format!("it gives something of {what}")),
+    let refused = |outcome: TrialOutcome, what: &str| match outcome {
+        TrialOutcome::Refused(_, message) if !message.is_empty() => Ok(()),
+        TrialOutcome::Refused(..) => Err(format!("it refuses {what} without a word")),
+        TrialOutcome::Broken(fault) => Err(format!("given {what}, {fault}")),
+        TrialOutcome::Answered(_) => Err(format!("it gives something of {what}")),
     };
     if card.inputs.is_empty() {
         let stage = bare.ok_or("it cannot be made without arguments")?;
@@ -384,8 +384,8 @@ fn lateness(trial: &Trial<'_>, inputs: &Inputs, after: u64) -> Result<Option<Dur
     drop(done);
     let since = watch.join().map_err(|_| "the watch failed".to_owned())?;
     match outcome {
-        Outcome::Broken(fault) => Err(fault),
-        Outcome::Refused(code, message) if code != ErrorCode::Cancelled && since.is_none() => {
+        TrialOutcome::Broken(fault) => Err(fault),
+        TrialOutcome::Refused(code, message) if code != ErrorCode::Cancelled && since.is_none() => {
             Err(format!("the large case is refused: {message}"))
         }
         _ => Ok(since.map(|s| end.saturating_duration_since(s))),

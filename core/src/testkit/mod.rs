@@ -38,7 +38,7 @@ pub mod trial;
 pub use contract::{check, checked, is_checked};
 pub use shapes::{mask, noisy_photo, outline, photo};
 pub use suite::{Case, cases};
-pub use trial::{Outcome, Trial};
+pub use trial::{Trial, TrialOutcome};
 
 use crate::artifact::{Artifact, ArtifactType};
 use crate::{Card, Context, Inputs, Registry, Stage, StageError};

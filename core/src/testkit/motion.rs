@@ -20,7 +20,7 @@ const SHIFT_PX: [u32; 2] = [5, 3];
 
 /// A motion of the input.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Motion {
+pub enum InputMotion {
     /// By metres.
     Shift(f64, f64),
     /// About the origin, radians.
@@ -30,19 +30,19 @@ pub enum Motion {
 }
 
 /// The motion by which a contract is checked.
-pub fn of(contract: Contract) -> Option<Motion> {
+pub fn of(contract: Contract) -> Option<InputMotion> {
     match contract {
-        Contract::TranslationEquivariant => Some(Motion::Shift(0.125, -0.0625)),
-        Contract::RotationEquivariant => Some(Motion::Turn(0.7)),
-        Contract::ScaleEquivariant => Some(Motion::Scale(1.5)),
+        Contract::TranslationEquivariant => Some(InputMotion::Shift(0.125, -0.0625)),
+        Contract::RotationEquivariant => Some(InputMotion::Turn(0.7)),
+        Contract::ScaleEquivariant => Some(InputMotion::Scale(1.5)),
         _ => None,
     }
 }
 
 /// True where every kind that a card takes can be moved so, and every kind that it gives be
 /// compared.
-pub fn applies(card: &Card, motion: Motion) -> bool {
-    let turns = matches!(motion, Motion::Turn(_));
+pub fn applies(card: &Card, motion: InputMotion) -> bool {
+    let turns = matches!(motion, InputMotion::Turn(_));
     let takes =
         |k: Kind| k == Outline::KIND || k == Panel::KIND || (!turns && (k == Photo::KIND || k == Mask::KIND));
     let gives = |k: Kind| k == Outline::KIND || k == Panel::KIND || k == SewingPlan::KIND;
@@ -53,7 +53,7 @@ pub fn applies(card: &Card, motion: Motion) -> bool {
 }
 
 /// The inputs moved; `None` where one cannot be.
-pub fn moved(inputs: &Inputs, motion: Motion) -> Option<Inputs> {
+pub fn moved(inputs: &Inputs, motion: InputMotion) -> Option<Inputs> {
     let one = |v: &PortValue| match v {
         PortValue::One(a) => Some(PortValue::One(artifact(a, motion)?)),
         PortValue::Set(kind, set) => {
@@ -65,7 +65,7 @@ pub fn moved(inputs: &Inputs, motion: Motion) -> Option<Inputs> {
     all.collect::<Option<_>>().map(Inputs)
 }
 
-fn artifact(a: &Arc<dyn Artifact>, motion: Motion) -> Option<Arc<dyn Artifact>> {
+fn artifact(a: &Arc<dyn Artifact>, motion: InputMotion) -> Option<Arc<dyn Artifact>> {
     let any: &dyn Any = a.as_ref();
     if let Some(o) = any.downcast_ref::<Outline>() {
         return Some(Arc::new(outline(o, motion)));
@@ -75,18 +75,18 @@ fn artifact(a: &Arc<dyn Artifact>, motion: Motion) -> Option<Arc<dyn Artifact>> 
     }
     if let Some(p) = any.downcast_ref::<Photo>() {
         return match motion {
-            Motion::Shift(..) => Some(Arc::new(p.with_pixels(shifted(p.pixels.as_ref())))),
-            Motion::Scale(s) => {
+            InputMotion::Shift(..) => Some(Arc::new(p.with_pixels(shifted(p.pixels.as_ref())))),
+            InputMotion::Scale(s) => {
                 Some(Arc::new(Photo { px_per_metre: p.px_per_metre.map(|x| x / s), ..p.clone() }))
             }
-            Motion::Turn(_) => None,
+            InputMotion::Turn(_) => None,
         };
     }
     let mask = any.downcast_ref::<Mask>()?;
     match motion {
-        Motion::Shift(..) => Some(Arc::new(Mask { pixels: Shared::new(shifted(mask.pixels.as_ref())) })),
-        Motion::Scale(_) => Some(Arc::new(mask.clone())),
-        Motion::Turn(_) => None,
+        InputMotion::Shift(..) => Some(Arc::new(Mask { pixels: Shared::new(shifted(mask.pixels.as_ref())) })),
+        InputMotion::Scale(_) => Some(Arc::new(mask.clone())),
+        InputMotion::Turn(_) => None,
     }
 }
 
@@ -100,15 +100,15 @@ fn shifted<P: Pixel + 'static>(image: &ImageBuffer<P, Vec<P::Subpixel>>) -> Imag
 }
 
 /// A point moved.
-pub fn point(q: Point2, motion: Motion) -> Point2 {
+pub fn point(q: Point2, motion: InputMotion) -> Point2 {
     match motion {
-        Motion::Shift(x, y) => q + Vector2::new(x, y),
-        Motion::Turn(a) => nalgebra::Rotation2::new(a) * q,
-        Motion::Scale(s) => q * s,
+        InputMotion::Shift(x, y) => q + Vector2::new(x, y),
+        InputMotion::Turn(a) => nalgebra::Rotation2::new(a) * q,
+        InputMotion::Scale(s) => q * s,
     }
 }
 
-fn outline(o: &Outline, motion: Motion) -> Outline {
+fn outline(o: &Outline, motion: InputMotion) -> Outline {
     let map = |l: &Loop| Loop {
         points: l.points.iter().map(|q| point(*q, motion)).collect(),
         corners: l.corners.clone(),
@@ -125,15 +125,15 @@ fn outline(o: &Outline, motion: Motion) -> Outline {
         lies: vec![],
         edges: o.edges.clone(),
     };
-    if matches!(motion, Motion::Scale(_)) {
+    if matches!(motion, InputMotion::Scale(_)) {
         let gauges: Vec<Gauge> = out.edges.iter().map(|e| Gauge::of(&out.edge_points(e), &[])).collect();
         out.edges.iter_mut().zip(gauges).for_each(|(e, g)| e.gauge = g);
     }
     out
 }
 
-fn panel(p: &Panel, motion: Motion) -> Panel {
-    let by = if let Motion::Scale(s) = motion { s } else { 1.0 };
+fn panel(p: &Panel, motion: InputMotion) -> Panel {
+    let by = if let InputMotion::Scale(s) = motion { s } else { 1.0 };
     Panel {
         positions: p.positions.iter().map(|q| point(*q, motion)).collect(),
         outline_area: p.outline_area * by * by,
@@ -148,7 +148,7 @@ fn panel(p: &Panel, motion: Motion) -> Panel {
 pub fn compare(
     before: &[PortValue],
     after: &[PortValue],
-    motion: Motion,
+    motion: InputMotion,
     pictures: bool,
 ) -> Result<(), String> {
     for (a, b) in before.iter().zip(after) {
@@ -164,7 +164,7 @@ pub fn compare(
     Ok(())
 }
 
-fn same(a: &dyn Artifact, b: &dyn Artifact, motion: Motion, pictures: bool) -> Result<(), String> {
+fn same(a: &dyn Artifact, b: &dyn Artifact, motion: InputMotion, pictures: bool) -> Result<(), String> {
     let (a, b): (&dyn Any, &dyn Any) = (a, b);
     if let (Some(a), Some(b)) = (a.downcast_ref::<Outline>(), b.downcast_ref::<Outline>()) {
         return if pictures { pictured(a, b, motion) } else { outlines(a, b, motion) };
@@ -182,7 +182,7 @@ fn size(points: &[Point2]) -> f64 {
     points.iter().map(|q| q.coords.amax()).fold(0.0, f64::max).max(1e-9)
 }
 
-fn panels(a: &Panel, b: &Panel, motion: Motion) -> Result<(), String> {
+fn panels(a: &Panel, b: &Panel, motion: InputMotion) -> Result<(), String> {
     if a.triangles != b.triangles {
         return Err("its triangles differ".into());
     }
@@ -198,7 +198,7 @@ fn near(off: f64, most: f64, scale: f64, unit: &str) -> Result<(), String> {
     }
 }
 
-fn outlines(a: &Outline, b: &Outline, motion: Motion) -> Result<(), String> {
+fn outlines(a: &Outline, b: &Outline, motion: InputMotion) -> Result<(), String> {
     let names = |o: &Outline| o.edges.iter().map(|e| e.name.clone()).collect::<Vec<_>>();
     if names(a) != names(b) {
         return Err(format!("its edges are {}, then {}", names(a).join(", "), names(b).join(", ")));
@@ -214,14 +214,14 @@ fn outlines(a: &Outline, b: &Outline, motion: Motion) -> Result<(), String> {
 }
 
 /// Outlines of pictures: moved ones are compared in pixels, scaled ones from their least corner.
-fn pictured(a: &Outline, b: &Outline, motion: Motion) -> Result<(), String> {
+fn pictured(a: &Outline, b: &Outline, motion: InputMotion) -> Result<(), String> {
     if a.outer.corners.len() != b.outer.corners.len() || a.holes.len() != b.holes.len() {
         let counts = |o: &Outline| format!("{} corners and {} holes", o.outer.corners.len(), o.holes.len());
         return Err(format!("it has {}, then {}", counts(a), counts(b)));
     }
     let (Some(fa), Some(fb)) = (a.frame, b.frame) else { return Err("it does not know its place".into()) };
     match motion {
-        Motion::Scale(s) => {
+        InputMotion::Scale(s) => {
             let from_low = |o: &Outline, by: f64| {
                 let low = o.bounds().0;
                 o.outer.points.iter().map(|q| Point2::from((q - low) * by)).collect::<Vec<_>>()
@@ -255,7 +255,7 @@ pub fn to_segment(q: Point2, a: Point2, b: Point2) -> f64 {
     (q - (a + d * t)).norm()
 }
 
-fn plans(a: &SewingPlan, b: &SewingPlan, motion: Motion) -> Result<(), String> {
+fn plans(a: &SewingPlan, b: &SewingPlan, motion: InputMotion) -> Result<(), String> {
     if a.seams.iter().map(Seam::name).ne(b.seams.iter().map(Seam::name)) {
         return Err("its seams differ".into());
     }

@@ -24,18 +24,18 @@ pub struct Case {
     pub hard: bool,
 }
 
-type Named = (&'static str, Arc<dyn Artifact>);
+type NamedArtifact = (&'static str, Arc<dyn Artifact>);
 
 /// Things that belong together.
-struct Scene {
+struct ExampleScene {
     name: &'static str,
     hard: bool,
-    holds: BTreeMap<Kind, Vec<Named>>,
+    holds: BTreeMap<Kind, Vec<NamedArtifact>>,
 }
 
-impl Scene {
+impl ExampleScene {
     fn new(name: &'static str, hard: bool) -> Self {
-        Scene { name, hard, holds: BTreeMap::new() }
+        ExampleScene { name, hard, holds: BTreeMap::new() }
     }
 
     fn with<T: ArtifactType>(mut self, entry: &'static str, artifact: T) -> Self {
@@ -72,11 +72,11 @@ fn back_panel() -> Panel {
 }
 
 /// Photos, masks and named outlines of a garment.
-fn garment(name: &'static str, front: &Outline, back: &Outline) -> Scene {
+fn garment(name: &'static str, front: &Outline, back: &Outline) -> ExampleScene {
     let framed = |o: &Outline| Outline { frame: Some(shapes::frame(o)), ..o.clone() };
     let (front_photo, front_mask) = shapes::photo_of(front);
     let (back_photo, back_mask) = shapes::photo_of(back);
-    Scene::new(name, false)
+    ExampleScene::new(name, false)
         .with("back", back_photo)
         .with("front", front_photo)
         .with("back", back_mask)
@@ -85,16 +85,16 @@ fn garment(name: &'static str, front: &Outline, back: &Outline) -> Scene {
         .with("front", framed(front))
 }
 
-fn images(name: &'static str, photo: RgbImage, mask: GrayImage) -> Scene {
-    Scene::new(name, true).both(shapes::photo_from(photo)).both(shapes::mask_from(mask))
+fn images(name: &'static str, photo: RgbImage, mask: GrayImage) -> ExampleScene {
+    ExampleScene::new(name, true).both(shapes::photo_from(photo)).both(shapes::mask_from(mask))
 }
 
-fn outlines(name: &'static str, outline: &Outline) -> Scene {
-    Scene::new(name, true).with("back", behind(outline)).with("front", outline.clone())
+fn outlines(name: &'static str, outline: &Outline) -> ExampleScene {
+    ExampleScene::new(name, true).with("back", behind(outline)).with("front", outline.clone())
 }
 
-fn scenes() -> &'static [Scene] {
-    static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
+fn scenes() -> &'static [ExampleScene] {
+    static SCENES: LazyLock<Vec<ExampleScene>> = LazyLock::new(|| {
         let (vest, low, tshirt) = (shapes::vest(0.5), shapes::vest(0.62), shapes::tshirt());
         let noise = shapes::noisy_photo(40, 30).pixels;
         let thresholded =
@@ -103,10 +103,10 @@ fn scenes() -> &'static [Scene] {
         vec![
             garment("a vest", &vest, &low).with("back", back_panel()).with("front", dress::garment_panel()),
             garment("a T-shirt", &tshirt, &tshirt),
-            Scene::new("a vest without names", false)
+            ExampleScene::new("a vest without names", false)
                 .with("back", shapes::unnamed(&low))
                 .with("front", shapes::unnamed(&vest)),
-            Scene::new("a T-shirt without names", false).both(shapes::unnamed(&tshirt)),
+            ExampleScene::new("a T-shirt without names", false).both(shapes::unnamed(&tshirt)),
             images("one pixel", RgbImage::new(1, 1), GrayImage::from_pixel(1, 1, Luma([255]))),
             images("all black", RgbImage::new(64, 48), GrayImage::new(64, 48)),
             images("noise", noise.as_ref().clone(), thresholded),
@@ -121,9 +121,9 @@ fn scenes() -> &'static [Scene] {
                 "a triangle",
                 &shapes::plain(point([[0.0, 0.0], [0.3, 0.0], [0.0, 0.2]]), vec![0, 1, 2]),
             ),
-            Scene::new("a ring", false).both(shapes::ring()),
-            Scene::new("a panel of 1 cm", true).both(shapes::panel(3, 3, 0.01, 0.01)),
-            Scene::new("a strip", true).both(shapes::panel(40, 1, 1.0, 0.004)),
+            ExampleScene::new("a ring", false).both(shapes::ring()),
+            ExampleScene::new("a panel of 1 cm", true).both(shapes::panel(3, 3, 0.01, 0.01)),
+            ExampleScene::new("a strip", true).both(shapes::panel(40, 1, 1.0, 0.004)),
         ]
     });
     &SCENES
@@ -140,7 +140,7 @@ pub fn value(port: &InPort, artifact: &Arc<dyn Artifact>) -> PortValue {
     }
 }
 
-fn scene_value(scene: &Scene, port: &InPort) -> Option<PortValue> {
+fn scene_value(scene: &ExampleScene, port: &InPort) -> Option<PortValue> {
     let entries = scene.holds.get(&port.kind)?;
     match port.arity {
         Arity::All => {
@@ -151,15 +151,15 @@ fn scene_value(scene: &Scene, port: &InPort) -> Option<PortValue> {
     }
 }
 
-type Maker = fn() -> Arc<dyn Artifact>;
+type MakeExample = fn() -> Arc<dyn Artifact>;
 /// A kind with an artifact that is made where it is first asked for.
-type Own = (Kind, LazyLock<Arc<dyn Artifact>, Maker>);
+type Own = (Kind, LazyLock<Arc<dyn Artifact>, MakeExample>);
 
 /// What stands on ports that no scene fills, a kind each. They are made once a process: the
 /// contracts of all cards ask for them some thousand times.
 fn own() -> &'static [Own] {
     static OWN: LazyLock<Vec<Own>> = LazyLock::new(|| {
-        let all: [(Kind, Maker); 14] = [
+        let all: [(Kind, MakeExample); 14] = [
             (Body::KIND, || Arc::new(dress::body())),
             (Fabric::KIND, || Arc::new(dress::fabric())),
             (SewingPlan::KIND, || Arc::new(dress::plan())),
@@ -241,7 +241,7 @@ pub fn has_empty(kind: Kind) -> bool {
     empty(kind).is_some()
 }
 
-fn empty(kind: Kind) -> Option<Maker> {
+fn empty(kind: Kind) -> Option<MakeExample> {
     Some(match kind {
         k if k == Photo::KIND => || Arc::new(shapes::photo_from(RgbImage::new(0, 0))),
         k if k == Mask::KIND => || Arc::new(shapes::mask_from(GrayImage::new(0, 0))),
@@ -271,7 +271,8 @@ fn empty(kind: Kind) -> Option<Maker> {
 
 /// Every case for a card; none where a required port takes a kind that the suite does not know.
 pub fn cases(card: &Card) -> Vec<Case> {
-    let wants = |scene: &&Scene| card.inputs.iter().any(|p| !p.optional && scene.holds.contains_key(&p.kind));
+    let wants =
+        |scene: &&ExampleScene| card.inputs.iter().any(|p| !p.optional && scene.holds.contains_key(&p.kind));
     let mut all: Vec<Case> =
         scenes().iter().filter(wants).filter_map(|scene| case(card, Some(scene))).collect();
     if all.is_empty() {
@@ -282,7 +283,7 @@ pub fn cases(card: &Card) -> Vec<Case> {
     all
 }
 
-fn case(card: &Card, scene: Option<&Scene>) -> Option<Case> {
+fn case(card: &Card, scene: Option<&ExampleScene>) -> Option<Case> {
     let pictured = |p: &&InPort| [Photo::KIND, Mask::KIND, Outline::KIND, Panel::KIND].contains(&p.kind);
     let fill = |port: &InPort| scene.and_then(|s| scene_value(s, port)).or_else(|| own_value(card, port));
     let inputs: Vec<Option<PortValue>> = card.inputs.iter().map(fill).collect();

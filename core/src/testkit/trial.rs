@@ -18,7 +18,7 @@ pub struct Trial<'a> {
 
 /// What a run came to.
 #[derive(Debug, Clone)]
-pub enum Outcome {
+pub enum TrialOutcome {
     /// It gave sound artifacts.
     Answered(Vec<PortValue>),
     /// It refused, with a code and a sentence.
@@ -29,22 +29,22 @@ pub enum Outcome {
 
 impl Trial<'_> {
     /// Runs it.
-    pub fn run(&self, inputs: &Inputs) -> Outcome {
+    pub fn run(&self, inputs: &Inputs) -> TrialOutcome {
         self.run_until(inputs, Cancel::new())
     }
 
     /// Runs it with a stop flag.
-    pub fn run_until(&self, inputs: &Inputs, cancel: Cancel) -> Outcome {
+    pub fn run_until(&self, inputs: &Inputs, cancel: Cancel) -> TrialOutcome {
         let cx = Context::new(self.stage.card().name, self.folder, cancel, Arc::new(()));
         match catch_unwind(AssertUnwindSafe(|| self.stage.run_ports(inputs, &cx))) {
-            Err(payload) => Outcome::Broken(format!("it panicked: {}", words(payload.as_ref()))),
+            Err(payload) => TrialOutcome::Broken(format!("it panicked: {}", words(payload.as_ref()))),
             Ok(Err(e)) if e.code == ErrorCode::Internal => {
-                Outcome::Broken(format!("it calls it its own fault: {e}"))
+                TrialOutcome::Broken(format!("it calls it its own fault: {e}"))
             }
-            Ok(Err(e)) => Outcome::Refused(e.code, e.message),
+            Ok(Err(e)) => TrialOutcome::Refused(e.code, e.message),
             Ok(Ok(made)) => match unsound(&made) {
-                Some(fault) => Outcome::Broken(fault),
-                None => Outcome::Answered(made),
+                Some(fault) => TrialOutcome::Broken(fault),
+                None => TrialOutcome::Answered(made),
             },
         }
     }
@@ -61,16 +61,16 @@ fn unsound(made: &[PortValue]) -> Option<String> {
     faults.map(|(kind, fault)| format!("it gave a {kind} that cannot be: {fault}"))
 }
 
-impl Outcome {
+impl TrialOutcome {
     /// True where it gave something.
     pub fn answered(&self) -> bool {
-        matches!(self, Outcome::Answered(_))
+        matches!(self, TrialOutcome::Answered(_))
     }
 
     /// What it gave.
     pub fn values(&self) -> Option<&[PortValue]> {
         match self {
-            Outcome::Answered(made) => Some(made),
+            TrialOutcome::Answered(made) => Some(made),
             _ => None,
         }
     }
@@ -78,9 +78,9 @@ impl Outcome {
     /// A text that two outcomes share if they are the same bits.
     pub fn fingerprint(&self) -> String {
         match self {
-            Outcome::Refused(code, message) => format!("refused ({code}): {message}"),
-            Outcome::Broken(fault) => fault.clone(),
-            Outcome::Answered(made) => {
+            TrialOutcome::Refused(code, message) => format!("refused ({code}): {message}"),
+            TrialOutcome::Broken(fault) => fault.clone(),
+            TrialOutcome::Answered(made) => {
                 let each = made.iter().flat_map(PortValue::entries);
                 each.map(|(name, a)| format!("{name} {} {}", a.kind(), digest(a.as_ref())))
                     .collect::<Vec<_>>()

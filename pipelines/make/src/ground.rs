@@ -1,7 +1,7 @@
 //! What the garment lies on.
 
-use crate::colour::{Rgb, blend, scale, smoothstep, srgb};
-use crate::garment::P;
+use crate::colour::{LinearColour, blend, scale, smoothstep, srgb};
+use crate::garment::PlanePoint;
 use crate::noise::{fractal, hash, value};
 
 /// A ground.
@@ -15,7 +15,7 @@ pub(crate) enum Ground {
 
 impl Ground {
     /// Its colour at a place, mm.
-    pub(crate) fn at(self, seed: u64, p: P) -> Rgb {
+    pub(crate) fn at(self, seed: u64, p: PlanePoint) -> LinearColour {
         match self {
             Ground::Oak => oak(seed, p),
             Ground::Linen => linen(seed, p),
@@ -26,7 +26,7 @@ impl Ground {
 /// Width of a board, mm.
 const BOARD: f64 = 118.0;
 
-fn oak(seed: u64, p: P) -> Rgb {
+fn oak(seed: u64, p: PlanePoint) -> LinearColour {
     let row = (p[0] / BOARD).floor();
     let board = row as i64;
     let tone = hash(seed, board, 1);
@@ -44,7 +44,7 @@ fn oak(seed: u64, p: P) -> Rgb {
     scale(base, light * gap)
 }
 
-fn linen(seed: u64, p: P) -> Rgb {
+fn linen(seed: u64, p: PlanePoint) -> LinearColour {
     let tau = std::f64::consts::TAU;
     let thread = 1.45;
     let bow = 1.2 * value(seed, p[0] / 90.0, p[1] / 90.0);
@@ -56,7 +56,7 @@ fn linen(seed: u64, p: P) -> Rgb {
 }
 
 /// Long shallow folds of a sheet, lit from the upper left.
-fn sheet_folds(seed: u64, p: P) -> f64 {
+fn sheet_folds(seed: u64, p: PlanePoint) -> f64 {
     let e = 2.0;
     let h = |x: f64, y: f64| 9.0 * fractal(seed + 7, (x + 0.6 * y) / 160.0, (y - 0.35 * x) / 420.0, 3);
     let dx = (h(p[0] + e, p[1]) - h(p[0] - e, p[1])) / (2.0 * e);

@@ -18,12 +18,12 @@ mod render;
 mod scene;
 mod truth;
 
-use cloth::{Finish, Structure};
+use cloth::{RimFinish, Structure};
 use colour::srgb;
-use garment::{Outline, Side};
+use garment::{NamedOutline, WearerSide};
 use ground::Ground;
 use image::codecs::jpeg::JpegEncoder;
-use render::{Shot, render};
+use render::{PhotoSetup, render};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -34,12 +34,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
     let folder = std::env::args_os().nth(1).map_or(default, PathBuf::from);
     let factor: f64 = std::env::args().nth(2).map_or(Ok(1.0), |f| f.parse())?;
-    for side in [Side::Front, Side::Back] {
+    for side in [WearerSide::Front, WearerSide::Back] {
         write(&folder.join("vest"), side, &enlarged(vest_shot(side), factor), &garment::vest(side))?;
         write(&folder.join("tshirt"), side, &enlarged(tshirt_shot(side), factor), &garment::tshirt(side))?;
     }
     for (name, shot, outline) in single() {
-        write(&folder.join(name), Side::Front, &enlarged(shot, factor), &outline)?;
+        write(&folder.join(name), WearerSide::Front, &enlarged(shot, factor), &outline)?;
     }
     panorama::write(&folder.join("panorama"))?;
     pattern::write(&folder.join("pattern"))?;
@@ -47,8 +47,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The same picture by a camera of that many times the resolution.
-fn enlarged(shot: Shot, factor: f64) -> Shot {
-    Shot {
+fn enlarged(shot: PhotoSetup, factor: f64) -> PhotoSetup {
+    PhotoSetup {
         size: shot.size.map(|n| (f64::from(n) * factor).round() as u32),
         px_per_mm: shot.px_per_mm * factor,
         origin: shot.origin.map(|x| (x + 0.5) * factor - 0.5),
@@ -57,8 +57,8 @@ fn enlarged(shot: Shot, factor: f64) -> Shot {
 }
 
 /// The garments of one photo.
-fn single() -> [(&'static str, Shot, Outline); 8] {
-    let knit = Shot {
+fn single() -> [(&'static str, PhotoSetup, NamedOutline); 8] {
+    let knit = PhotoSetup {
         seed: 31,
         size: [1900, 1130],
         px_per_mm: 1.5,
@@ -69,13 +69,13 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
         thread: srgb(150, 92, 98),
         print: print::plain,
         finish: |edge| match edge {
-            "hem" => Finish::Hemmed(22.0),
-            "cuff_left" | "cuff_right" => Finish::Bound(38.0, srgb(96, 40, 48)),
-            "neck" => Finish::Bound(18.0, srgb(98, 42, 50)),
-            _ => Finish::Seam,
+            "hem" => RimFinish::Hemmed(22.0),
+            "cuff_left" | "cuff_right" => RimFinish::Bound(38.0, srgb(96, 40, 48)),
+            "neck" => RimFinish::Bound(18.0, srgb(98, 42, 50)),
+            _ => RimFinish::Seam,
         },
     };
-    let skirt = Shot {
+    let skirt = PhotoSetup {
         seed: 41,
         size: [1420, 1260],
         px_per_mm: 2.0,
@@ -86,12 +86,12 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
         thread: srgb(92, 118, 140),
         print: print::border,
         finish: |edge| match edge {
-            "hem" => Finish::Hemmed(24.0),
-            "neck" => Finish::Hemmed(34.0),
-            _ => Finish::Seam,
+            "hem" => RimFinish::Hemmed(24.0),
+            "neck" => RimFinish::Hemmed(34.0),
+            _ => RimFinish::Seam,
         },
     };
-    let dress = Shot {
+    let dress = PhotoSetup {
         seed: 51,
         size: [1240, 1630],
         px_per_mm: 1.55,
@@ -102,12 +102,12 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
         thread: srgb(88, 124, 120),
         print: print::dots,
         finish: |edge| match edge {
-            "hem" => Finish::Hemmed(18.0),
-            "neck" | "armhole_left" | "armhole_right" => Finish::Bound(8.0, srgb(26, 56, 54)),
-            _ => Finish::Seam,
+            "hem" => RimFinish::Hemmed(18.0),
+            "neck" | "armhole_left" | "armhole_right" => RimFinish::Bound(8.0, srgb(26, 56, 54)),
+            _ => RimFinish::Seam,
         },
     };
-    let trousers = Shot {
+    let trousers = PhotoSetup {
         seed: 61,
         size: [1060, 1660],
         px_per_mm: 1.5,
@@ -118,11 +118,11 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
         thread: srgb(98, 102, 112),
         print: print::plain,
         finish: |edge| match edge {
-            "neck" => Finish::Hemmed(38.0),
-            _ => Finish::Seam,
+            "neck" => RimFinish::Hemmed(38.0),
+            _ => RimFinish::Seam,
         },
     };
-    let shorts = Shot {
+    let shorts = PhotoSetup {
         seed: 71,
         size: [1380, 1140],
         px_per_mm: 2.0,
@@ -133,11 +133,11 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
         thread: srgb(128, 134, 104),
         print: print::plain,
         finish: |edge| match edge {
-            "neck" => Finish::Hemmed(34.0),
-            _ => Finish::Seam,
+            "neck" => RimFinish::Hemmed(34.0),
+            _ => RimFinish::Seam,
         },
     };
-    let onepiece = Shot {
+    let onepiece = PhotoSetup {
         seed: 81,
         size: [1440, 1480],
         px_per_mm: 2.4,
@@ -148,11 +148,11 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
         thread: srgb(112, 146, 152),
         print: print::dots,
         finish: |edge| match edge {
-            "neck" | "cuff_left" | "cuff_right" => Finish::Bound(10.0, srgb(48, 82, 92)),
-            _ => Finish::Seam,
+            "neck" | "cuff_left" | "cuff_right" => RimFinish::Bound(10.0, srgb(48, 82, 92)),
+            _ => RimFinish::Seam,
         },
     };
-    let shirt = Shot {
+    let shirt = PhotoSetup {
         seed: 91,
         size: [2040, 1230],
         px_per_mm: 1.5,
@@ -163,13 +163,13 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
         thread: srgb(110, 132, 164),
         print: print::placket,
         finish: |edge| match edge {
-            "hem" => Finish::Hemmed(8.0),
-            "cuff_left" | "cuff_right" => Finish::Bound(55.0, srgb(64, 84, 116)),
-            "neck" => Finish::Bound(26.0, srgb(64, 84, 116)),
-            _ => Finish::Seam,
+            "hem" => RimFinish::Hemmed(8.0),
+            "cuff_left" | "cuff_right" => RimFinish::Bound(55.0, srgb(64, 84, 116)),
+            "neck" => RimFinish::Bound(26.0, srgb(64, 84, 116)),
+            _ => RimFinish::Seam,
         },
     };
-    let pleated = Shot {
+    let pleated = PhotoSetup {
         seed: 101,
         base: srgb(86, 58, 92),
         thread: srgb(128, 98, 134),
@@ -189,9 +189,9 @@ fn single() -> [(&'static str, Shot, Outline); 8] {
     ]
 }
 
-fn vest_shot(side: Side) -> Shot {
-    let front = side == Side::Front;
-    Shot {
+fn vest_shot(side: WearerSide) -> PhotoSetup {
+    let front = side == WearerSide::Front;
+    PhotoSetup {
         seed: if front { 11 } else { 12 },
         size: [1400, 1600],
         px_per_mm: 2.35,
@@ -202,16 +202,16 @@ fn vest_shot(side: Side) -> Shot {
         thread: srgb(96, 112, 140),
         print: if front { print::vest_front } else { print::vest_back },
         finish: |edge| match edge {
-            "hem" => Finish::Hemmed(16.0),
-            "neck" | "armhole_left" | "armhole_right" => Finish::Bound(9.0, srgb(30, 40, 66)),
-            _ => Finish::Seam,
+            "hem" => RimFinish::Hemmed(16.0),
+            "neck" | "armhole_left" | "armhole_right" => RimFinish::Bound(9.0, srgb(30, 40, 66)),
+            _ => RimFinish::Seam,
         },
     }
 }
 
-fn tshirt_shot(side: Side) -> Shot {
-    let front = side == Side::Front;
-    Shot {
+fn tshirt_shot(side: WearerSide) -> PhotoSetup {
+    let front = side == WearerSide::Front;
+    PhotoSetup {
         seed: if front { 21 } else { 22 },
         size: [1800, 1600],
         px_per_mm: 2.1,
@@ -222,17 +222,22 @@ fn tshirt_shot(side: Side) -> Shot {
         thread: srgb(92, 118, 104),
         print: if front { print::tshirt_front } else { print::tshirt_back },
         finish: |edge| match edge {
-            "hem" => Finish::Hemmed(22.0),
-            "cuff_left" | "cuff_right" => Finish::Hemmed(19.0),
-            "neck" => Finish::Bound(17.0, srgb(42, 66, 55)),
-            _ => Finish::Seam,
+            "hem" => RimFinish::Hemmed(22.0),
+            "cuff_left" | "cuff_right" => RimFinish::Hemmed(19.0),
+            "neck" => RimFinish::Bound(17.0, srgb(42, 66, 55)),
+            _ => RimFinish::Seam,
         },
     }
 }
 
-fn write(folder: &Path, side: Side, shot: &Shot, outline: &Outline) -> Result<(), Box<dyn Error>> {
+fn write(
+    folder: &Path,
+    side: WearerSide,
+    shot: &PhotoSetup,
+    outline: &NamedOutline,
+) -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder)?;
-    let name = if side == Side::Front { "front" } else { "back" };
+    let name = if side == WearerSide::Front { "front" } else { "back" };
     let (photo, mask) = render(shot, outline);
     let mut jpeg = Vec::new();
     JpegEncoder::new_with_quality(&mut jpeg, QUALITY).encode_image(&photo)?;
@@ -272,8 +277,8 @@ mod tests {
 
     #[test]
     fn the_committed_outlines_are_those_of_this_program() {
-        for side in [Side::Front, Side::Back] {
-            let name = if side == Side::Front { "front" } else { "back" };
+        for side in [WearerSide::Front, WearerSide::Back] {
+            let name = if side == WearerSide::Front { "front" } else { "back" };
             for (garment, shot, outline) in [
                 ("vest", vest_shot(side), garment::vest(side)),
                 ("tshirt", tshirt_shot(side), garment::tshirt(side)),

@@ -3,7 +3,7 @@
 //! A grid of cells keeps, for each cell, only the segments that can be nearest to one of its
 //! points.
 
-use crate::garment::{Outline, P, distance};
+use crate::garment::{NamedOutline, PlanePoint, distance};
 
 /// Cell size, mm: smaller cells hold fewer segments but there are more of them.
 const CELL: f64 = 10.0;
@@ -12,7 +12,7 @@ const MARGIN: f64 = 120.0;
 
 /// The answer to a query.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Near {
+pub(crate) struct NearestEdge {
     /// Distance to the outline, mm, positive inside.
     pub(crate) depth: f64,
     /// Index of the nearest edge.
@@ -24,8 +24,8 @@ pub(crate) struct Near {
 /// The outline prepared for queries.
 #[derive(Debug)]
 pub(crate) struct NearField<'a> {
-    outline: &'a Outline,
-    low: P,
+    outline: &'a NamedOutline,
+    low: PlanePoint,
     columns: usize,
     rows: usize,
     cells: Vec<Vec<u32>>,
@@ -34,7 +34,7 @@ pub(crate) struct NearField<'a> {
 }
 
 impl<'a> NearField<'a> {
-    pub(crate) fn new(outline: &'a Outline) -> Self {
+    pub(crate) fn new(outline: &'a NamedOutline) -> Self {
         let fold =
             |f: fn(f64, f64) -> f64, k: usize, from: f64| outline.points.iter().map(|p| p[k]).fold(from, f);
         let low = [0, 1].map(|k| fold(f64::min, k, f64::INFINITY) - MARGIN);
@@ -53,7 +53,7 @@ impl<'a> NearField<'a> {
         field
     }
 
-    fn segment(&self, i: usize) -> (P, P) {
+    fn segment(&self, i: usize) -> (PlanePoint, PlanePoint) {
         let p = &self.outline.points;
         (p[i], p[(i + 1) % p.len()])
     }
@@ -72,7 +72,7 @@ impl<'a> NearField<'a> {
     }
 
     /// A horizontal line at height `y`, along which points are asked for.
-    pub(crate) fn row(&self, y: f64) -> Row<'_> {
+    pub(crate) fn row(&self, y: f64) -> OutlineRow<'_> {
         let points = &self.outline.points;
         let mut crossings: Vec<f64> = points
             .iter()
@@ -81,21 +81,21 @@ impl<'a> NearField<'a> {
             .map(|(a, b)| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
             .collect();
         crossings.sort_by(f64::total_cmp);
-        Row { field: self, y, crossings }
+        OutlineRow { field: self, y, crossings }
     }
 }
 
 /// One horizontal line over the outline, with its crossings.
 #[derive(Debug)]
-pub(crate) struct Row<'a> {
+pub(crate) struct OutlineRow<'a> {
     field: &'a NearField<'a>,
     y: f64,
     crossings: Vec<f64>,
 }
 
-impl Row<'_> {
+impl OutlineRow<'_> {
     /// The nearest place of the outline; points beyond the margin count as at its border.
-    pub(crate) fn at(&self, x: f64) -> Near {
+    pub(crate) fn at(&self, x: f64) -> NearestEdge {
         let (f, p) = (self.field, [x, self.y]);
         let index = |k: usize, count: usize| (((p[k] - f.low[k]) / CELL).max(0.0) as usize).min(count - 1);
         let mut best = (f64::INFINITY, 0.0, 0);
@@ -109,7 +109,7 @@ impl Row<'_> {
         let (a, b) = f.segment(i);
         // Even-odd rule.
         let inside = self.crossings.iter().filter(|&&c| c < x).count() % 2 == 1;
-        Near {
+        NearestEdge {
             depth: if inside { d } else { -d },
             edge: f.edge_of[i],
             along: f.along[i] + t * distance(a, b),
@@ -117,7 +117,7 @@ impl Row<'_> {
     }
 }
 
-fn arc_lengths(outline: &Outline) -> Vec<f64> {
+fn arc_lengths(outline: &NamedOutline) -> Vec<f64> {
     let mut sum = 0.0;
     let next = outline.points.iter().cycle().skip(1);
     outline
@@ -132,13 +132,13 @@ fn arc_lengths(outline: &Outline) -> Vec<f64> {
         .collect()
 }
 
-fn edge_indices(outline: &Outline) -> Vec<usize> {
+fn edge_indices(outline: &NamedOutline) -> Vec<usize> {
     let last = |i: usize| outline.edges.iter().rposition(|e| e.start <= i).unwrap_or(0);
     (0..outline.points.len()).map(last).collect()
 }
 
 /// Distance of a point to a segment and the share of the segment up to its nearest point.
-fn to_segment(p: P, (a, b): (P, P)) -> (f64, f64) {
+fn to_segment(p: PlanePoint, (a, b): (PlanePoint, PlanePoint)) -> (f64, f64) {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let square = u[0] * u[0] + u[1] * u[1];
     let t = if square > 0.0 { ((u[0] * v[0] + u[1] * v[1]) / square).clamp(0.0, 1.0) } else { 0.0 };

@@ -5,7 +5,7 @@
 //! it meets.
 
 use crate::QUALITY;
-use crate::colour::{Rgb, blend, encode, scale, smoothstep, srgb};
+use crate::colour::{LinearColour, blend, encode, scale, smoothstep, srgb};
 use crate::noise::fractal;
 use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
@@ -40,7 +40,7 @@ fn picture() -> RgbImage {
 }
 
 /// The light that comes from a direction.
-fn seen(d: [f64; 3]) -> Rgb {
+fn seen(d: [f64; 3]) -> LinearColour {
     let way = |k: usize| if d[k] > 0.0 { ROOM[k][1] / d[k] } else { ROOM[k][0] / d[k].min(-1e-9) };
     let wall = (0..3).min_by(|a, b| way(*a).total_cmp(&way(*b))).unwrap_or(0);
     let p = d.map(|v| v * way(wall));

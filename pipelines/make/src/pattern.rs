@@ -10,53 +10,52 @@ mod shirt;
 mod sleeve;
 mod trousers;
 
+use crate::garment::PlanePoint;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::path::Path;
 
-type P = [f64; 2];
-
 /// An edge to the next corner: straight without controls, a quadratic curve with one, a cubic curve
 /// with two. Controls are relative to the chord: along it, and across it to the left.
 #[derive(Clone)]
-struct Edge {
+struct DraftEdge {
     name: &'static str,
-    controls: Vec<P>,
+    controls: Vec<PlanePoint>,
 }
 
 /// A panel with its place.
-struct Panel {
+struct DraftPanel {
     name: String,
     label: &'static str,
-    corners: Vec<P>,
-    edges: Vec<Edge>,
+    corners: Vec<PlanePoint>,
+    edges: Vec<DraftEdge>,
     at: [f64; 3],
     /// Degrees about z.
     turn: f64,
 }
 
-fn line(name: &'static str) -> Edge {
-    Edge { name, controls: Vec::new() }
+fn line(name: &'static str) -> DraftEdge {
+    DraftEdge { name, controls: Vec::new() }
 }
 
-fn bent(name: &'static str, along: f64, across: f64) -> Edge {
-    Edge { name, controls: vec![[along, across]] }
+fn bent(name: &'static str, along: f64, across: f64) -> DraftEdge {
+    DraftEdge { name, controls: vec![[along, across]] }
 }
 
 /// A curve whose controls are points of the panel.
-fn curve(name: &'static str, from: P, to: P, controls: &[P]) -> Edge {
+fn curve(name: &'static str, from: PlanePoint, to: PlanePoint, controls: &[PlanePoint]) -> DraftEdge {
     let d = [to[0] - from[0], to[1] - from[1]];
     let square = d[0] * d[0] + d[1] * d[1];
-    let relative = |c: &P| {
+    let relative = |c: &PlanePoint| {
         let r = [c[0] - from[0], c[1] - from[1]];
         [(r[0] * d[0] + r[1] * d[1]) / square, (r[1] * d[0] - r[0] * d[1]) / square]
     };
-    Edge { name, controls: controls.iter().map(relative).collect() }
+    DraftEdge { name, controls: controls.iter().map(relative).collect() }
 }
 
 /// The corners of a dart in a straight edge: one end of its mouth, its tip to the left of the edge,
 /// the other end.
-fn dart(from: P, to: P, distance: f64, width: f64, depth: f64) -> [P; 3] {
+fn dart(from: PlanePoint, to: PlanePoint, distance: f64, width: f64, depth: f64) -> [PlanePoint; 3] {
     let d = [to[0] - from[0], to[1] - from[1]];
     let long = d[0].hypot(d[1]);
     let u = [d[0] / long, d[1] / long];
@@ -66,26 +65,26 @@ fn dart(from: P, to: P, distance: f64, width: f64, depth: f64) -> [P; 3] {
     [at(distance - width / 2.0, 0.0), at(distance, depth), at(distance + width / 2.0, 0.0)]
 }
 
-fn distance(a: P, b: P) -> f64 {
+fn distance(a: PlanePoint, b: PlanePoint) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-impl Edge {
+impl DraftEdge {
     /// The edge run through backwards; `side` is -1 where what was to its left then lies to its
     /// right.
     fn reversed(&self, side: f64) -> Self {
         let controls = self.controls.iter().rev().map(|[along, across]| [1.0 - along, side * across]);
-        Edge { controls: controls.collect(), ..*self }
+        DraftEdge { controls: controls.collect(), ..*self }
     }
 
     /// Its length between two corners, from many chords: what is matched by it is matched to a
     /// hundredth of a millimetre.
-    fn length(&self, from: P, to: P) -> f64 {
+    fn length(&self, from: PlanePoint, to: PlanePoint) -> f64 {
         let d = [to[0] - from[0], to[1] - from[1]];
-        let point = |[along, across]: P| {
+        let point = |[along, across]: PlanePoint| {
             [from[0] + along * d[0] - across * d[1], from[1] + along * d[1] + across * d[0]]
         };
-        let hull: Vec<P> = self.controls.iter().copied().map(point).collect();
+        let hull: Vec<PlanePoint> = self.controls.iter().copied().map(point).collect();
         let at = |t: f64| {
             let u = 1.0 - t;
             [0, 1].map(|k| match hull[..] {
@@ -99,9 +98,15 @@ impl Edge {
     }
 }
 
-impl Panel {
-    fn new(name: &str, label: &'static str, corners: &[P], edges: &[Edge], at: [f64; 3]) -> Self {
-        Panel {
+impl DraftPanel {
+    fn new(
+        name: &str,
+        label: &'static str,
+        corners: &[PlanePoint],
+        edges: &[DraftEdge],
+        at: [f64; 3],
+    ) -> Self {
+        DraftPanel {
             name: name.to_owned(),
             label,
             corners: corners.to_vec(),
@@ -117,20 +122,34 @@ impl Panel {
         let n = self.corners.len();
         let corners = (0..n).map(|k| self.corners[(n - k) % n]).map(|[x, y]| [-x, y]).collect();
         // Run through backwards in a mirror, a curve bends to the same side.
-        let turned = |e: &Edge| e.reversed(1.0);
+        let turned = |e: &DraftEdge| e.reversed(1.0);
         let edges = self.edges.iter().rev().map(turned).collect();
         let [x, y, z] = self.at;
-        Panel { name: name.to_owned(), corners, edges, at: [-x, y, z], turn: -self.turn, label: self.label }
+        DraftPanel {
+            name: name.to_owned(),
+            corners,
+            edges,
+            at: [-x, y, z],
+            turn: -self.turn,
+            label: self.label,
+        }
     }
 
     /// The same outline behind the body: it runs clockwise as seen from its own back.
     fn behind(&self, name: &str) -> Self {
         let n = self.corners.len();
         let corners = (0..n).map(|k| self.corners[(n - k) % n]).collect();
-        let turned = |e: &Edge| e.reversed(-1.0);
+        let turned = |e: &DraftEdge| e.reversed(-1.0);
         let edges = self.edges.iter().rev().map(turned).collect();
         let [x, y, z] = self.at;
-        Panel { name: name.to_owned(), corners, edges, at: [x, y, -z], turn: self.turn, label: self.label }
+        DraftPanel {
+            name: name.to_owned(),
+            corners,
+            edges,
+            at: [x, y, -z],
+            turn: self.turn,
+            label: self.label,
+        }
     }
 
     fn number(&self, edge: &str) -> Result<usize, String> {
@@ -140,7 +159,7 @@ impl Panel {
 
     fn json(&self) -> Value {
         let n = self.corners.len();
-        let edge = |(k, e): (usize, &Edge)| {
+        let edge = |(k, e): (usize, &DraftEdge)| {
             let mut out = json!({ "endpoints": [k, (k + 1) % n], "label": e.name });
             if !e.controls.is_empty() {
                 let kind = if e.controls.len() == 1 { "quadratic" } else { "cubic" };
@@ -159,12 +178,12 @@ impl Panel {
 }
 
 /// A garment: its panels, and which edges are stitched to which.
-struct Garment {
-    panels: Vec<Panel>,
+struct DraftGarment {
+    panels: Vec<DraftPanel>,
     stitches: Vec<[(String, &'static str); 2]>,
 }
 
-impl Garment {
+impl DraftGarment {
     fn stitch(&mut self, a: &str, edge: &'static str, b: &str, other: &'static str) {
         self.stitches.push([(a.to_owned(), edge), (b.to_owned(), other)]);
     }
@@ -196,7 +215,7 @@ impl Garment {
 
 /// The files: names and contents.
 pub(crate) fn files() -> Result<[(&'static str, String); 4], Box<dyn Error>> {
-    let text = |g: &Garment| -> Result<String, Box<dyn Error>> {
+    let text = |g: &DraftGarment| -> Result<String, Box<dyn Error>> {
         Ok(serde_json::to_string_pretty(&g.json()?)? + "\n")
     };
     Ok([

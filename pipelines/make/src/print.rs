@@ -1,31 +1,31 @@
 //! What is printed on the cloth: stripes and motifs as signed distances, so that their rims are
 //! soft by the width of a pixel and not stepped.
 
-use crate::colour::{Rgb, blend, smoothstep, srgb};
-use crate::garment::{P, distance};
+use crate::colour::{LinearColour, blend, smoothstep, srgb};
+use crate::garment::{PlanePoint, distance};
 
 /// Half the width over which the rim of a print fades, mm: ink soaks into the yarn.
 const RIM: f64 = 0.35;
 
 /// Paints `ink` over `under` where the signed distance `d` (mm, negative inside) says so.
-fn paint(under: Rgb, ink: Rgb, d: f64) -> Rgb {
+fn paint(under: LinearColour, ink: LinearColour, d: f64) -> LinearColour {
     blend(ink, under, smoothstep(-RIM, RIM, d))
 }
 
 /// Nothing.
-pub(crate) fn plain(base: Rgb, _: P) -> Rgb {
+pub(crate) fn plain(base: LinearColour, _: PlanePoint) -> LinearColour {
     base
 }
 
 /// Two bands above a skirt's hem, which is 9 mm lower in the middle.
-pub(crate) fn border(base: Rgb, p: P) -> Rgb {
+pub(crate) fn border(base: LinearColour, p: PlanePoint) -> LinearColour {
     let high = p[1] - 9.0 * (p[0] / 312.0).powi(2);
     let cloth = paint(base, srgb(196, 168, 112), (high - 78.0).abs() - 14.0);
     paint(cloth, srgb(150, 70, 52), (high - 108.0).abs() - 4.0)
 }
 
 /// A band down the middle, 32 mm wide, with its buttons.
-pub(crate) fn placket(base: Rgb, p: P) -> Rgb {
+pub(crate) fn placket(base: LinearColour, p: PlanePoint) -> LinearColour {
     let edge = (p[0] + 16.0).abs() - 0.7;
     let stitches = (p[0].abs() - 11.0).abs() - 0.35;
     let row = ((p[1] - 40.0) / 84.0).round();
@@ -36,7 +36,7 @@ pub(crate) fn placket(base: Rgb, p: P) -> Rgb {
 }
 
 /// Edges of six pleats, from a waist of 366 mm down to a hem of 624, and the shade beside each.
-pub(crate) fn pleats(base: Rgb, p: P) -> Rgb {
+pub(crate) fn pleats(base: LinearColour, p: PlanePoint) -> LinearColour {
     let wide = 312.0 - (p[1] - 9.0) / 543.0 * 129.0;
     let share = (p[0] / wide + 1.0) * 3.0 - 0.5;
     let off = (share - share.round()) * wide / 3.0;
@@ -46,7 +46,7 @@ pub(crate) fn pleats(base: Rgb, p: P) -> Rgb {
 }
 
 /// Dots in rows.
-pub(crate) fn dots(base: Rgb, p: P) -> Rgb {
+pub(crate) fn dots(base: LinearColour, p: PlanePoint) -> LinearColour {
     let row = (p[1] / 34.0).round();
     let shift = if row.rem_euclid(2.0) < 0.5 { 0.0 } else { 20.0 };
     let x = (p[0] - shift) / 40.0;
@@ -55,7 +55,7 @@ pub(crate) fn dots(base: Rgb, p: P) -> Rgb {
 }
 
 /// Navy with bands that run on from front to back at the side seams, and a star in a ring.
-pub(crate) fn vest_front(base: Rgb, p: P) -> Rgb {
+pub(crate) fn vest_front(base: LinearColour, p: PlanePoint) -> LinearColour {
     let cloth = vest_bands(base, p);
     let ink = srgb(186, 76, 50);
     let c = [p[0], p[1] - 388.0];
@@ -64,7 +64,7 @@ pub(crate) fn vest_front(base: Rgb, p: P) -> Rgb {
 }
 
 /// The same bands; a number as on a team's shirt.
-pub(crate) fn vest_back(base: Rgb, p: P) -> Rgb {
+pub(crate) fn vest_back(base: LinearColour, p: PlanePoint) -> LinearColour {
     let cloth = vest_bands(base, p);
     let ink = srgb(178, 70, 46);
     let seven = stroke(p, &[[-92.0, 478.0], [-22.0, 478.0], [-60.0, 350.0]]);
@@ -73,7 +73,7 @@ pub(crate) fn vest_back(base: Rgb, p: P) -> Rgb {
     paint(cloth, ink, seven.min(two) - 9.5)
 }
 
-fn vest_bands(base: Rgb, p: P) -> Rgb {
+fn vest_bands(base: LinearColour, p: PlanePoint) -> LinearColour {
     let mut cloth = base;
     let blue = srgb(76, 104, 136);
     for centre in [62.0, 116.0, 170.0, 224.0, 278.0] {
@@ -84,7 +84,7 @@ fn vest_bands(base: Rgb, p: P) -> Rgb {
 }
 
 /// Forest green with a sun over mountains, and a band across both sleeves.
-pub(crate) fn tshirt_front(base: Rgb, p: P) -> Rgb {
+pub(crate) fn tshirt_front(base: LinearColour, p: PlanePoint) -> LinearColour {
     let cloth = sleeve_bands(base, p);
     let c = [p[0], p[1] - 395.0];
     let frame = boxed(c, [104.0, 84.0], 10.0);
@@ -99,7 +99,7 @@ pub(crate) fn tshirt_front(base: Rgb, p: P) -> Rgb {
 }
 
 /// Three long waves and a compass rose.
-pub(crate) fn tshirt_back(base: Rgb, p: P) -> Rgb {
+pub(crate) fn tshirt_back(base: LinearColour, p: PlanePoint) -> LinearColour {
     let mut cloth = sleeve_bands(base, p);
     for (k, ink) in [srgb(96, 120, 116), srgb(120, 96, 70), srgb(150, 74, 54)].into_iter().enumerate() {
         let wave = 196.0 + 46.0 * k as f64 + 15.0 * (p[0] / 38.0 + k as f64).sin();
@@ -114,7 +114,7 @@ pub(crate) fn tshirt_back(base: Rgb, p: P) -> Rgb {
     paint(paint(cloth, srgb(110, 96, 74), small), srgb(158, 72, 52), rose)
 }
 
-fn sleeve_bands(base: Rgb, p: P) -> Rgb {
+fn sleeve_bands(base: LinearColour, p: PlanePoint) -> LinearColour {
     // Parallel to the cuff, which runs from (317, 334) to (380, 525); the line would meet the
     // sides.
     let from_cuff = ((380.0 - p[0].abs()) * 191.0 + (p[1] - 525.0) * 63.0) / 191f64.hypot(63.0);
@@ -127,7 +127,7 @@ fn sleeve_bands(base: Rgb, p: P) -> Rgb {
 }
 
 /// A five-pointed star of outer radius `r`, its first point up.
-fn star(p: P, r: f64) -> f64 {
+fn star(p: PlanePoint, r: f64) -> f64 {
     let sector = std::f64::consts::TAU / 5.0;
     let angle = p[0].atan2(p[1]);
     let folded = (angle - (angle / sector).round() * sector).abs();
@@ -140,19 +140,19 @@ fn star(p: P, r: f64) -> f64 {
 }
 
 /// A slim rhombus, `r` tall.
-fn diamond(p: P, r: f64) -> f64 {
+fn diamond(p: PlanePoint, r: f64) -> f64 {
     let (half, tall) = (r * 0.2, r);
     (p[0].abs() * tall + p[1].abs() * half - half * tall) / half.hypot(tall)
 }
 
 /// A box with round corners.
-fn boxed(p: P, half: P, radius: f64) -> f64 {
+fn boxed(p: PlanePoint, half: PlanePoint, radius: f64) -> f64 {
     let q = [0, 1].map(|k| p[k].abs() - half[k] + radius);
     q[0].max(0.0).hypot(q[1].max(0.0)) + q[0].max(q[1]).min(0.0) - radius
 }
 
 /// Below a mountain's crest; the height difference stands in for the distance.
-fn ridge(p: P, crest: &[P]) -> f64 {
+fn ridge(p: PlanePoint, crest: &[PlanePoint]) -> f64 {
     let height = crest
         .windows(2)
         .find(|w| p[0] < w[1][0])
@@ -161,8 +161,8 @@ fn ridge(p: P, crest: &[P]) -> f64 {
 }
 
 /// Distance to a polyline.
-fn stroke(p: P, line: &[P]) -> f64 {
-    let to = |w: &[P]| {
+fn stroke(p: PlanePoint, line: &[PlanePoint]) -> f64 {
+    let to = |w: &[PlanePoint]| {
         let (u, v) = ([w[1][0] - w[0][0], w[1][1] - w[0][1]], [p[0] - w[0][0], p[1] - w[0][1]]);
         let t = ((u[0] * v[0] + u[1] * v[1]) / (u[0] * u[0] + u[1] * u[1])).clamp(0.0, 1.0);
         distance(v, [u[0] * t, u[1] * t])
@@ -171,7 +171,7 @@ fn stroke(p: P, line: &[P]) -> f64 {
 }
 
 /// A circular arc as a polyline, degrees.
-fn arc(centre: P, r: f64, from: f64, to: f64) -> Vec<P> {
+fn arc(centre: PlanePoint, r: f64, from: f64, to: f64) -> Vec<PlanePoint> {
     let at = |k: u32| (from + (to - from) * f64::from(k) / 24.0).to_radians();
     (0..=24).map(|k| [centre[0] + r * at(k).cos(), centre[1] + r * at(k).sin()]).collect()
 }

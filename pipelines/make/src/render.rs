@@ -1,27 +1,27 @@
 //! From a garment to its photo: coverage, cloth, shadow, light, lens, sensor.
 
-use crate::cloth::{self, Finish, Structure};
-use crate::colour::{Rgb, blend, encode, scale};
-use crate::garment::{Outline, P};
+use crate::cloth::{self, RimFinish, Structure};
+use crate::colour::{LinearColour, blend, encode, scale};
+use crate::garment::{NamedOutline, PlanePoint};
 use crate::ground::Ground;
-use crate::near::{Near, NearField, Row};
+use crate::near::{NearField, NearestEdge, OutlineRow};
 use crate::noise::{fractal, gauss};
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
 
 /// Everything that makes one picture.
-pub(crate) struct Shot {
+pub(crate) struct PhotoSetup {
     pub(crate) seed: u64,
     pub(crate) size: [u32; 2],
     pub(crate) px_per_mm: f64,
     /// Pixel under the pattern's origin; pixel centres lie at integer coordinates.
-    pub(crate) origin: P,
+    pub(crate) origin: PlanePoint,
     pub(crate) ground: Ground,
     pub(crate) structure: Structure,
-    pub(crate) base: Rgb,
-    pub(crate) thread: Rgb,
-    pub(crate) print: fn(Rgb, P) -> Rgb,
-    pub(crate) finish: fn(&str) -> Finish,
+    pub(crate) base: LinearColour,
+    pub(crate) thread: LinearColour,
+    pub(crate) print: fn(LinearColour, PlanePoint) -> LinearColour,
+    pub(crate) finish: fn(&str) -> RimFinish,
 }
 
 /// Blur of the lens, standard deviation in pixels.
@@ -29,21 +29,22 @@ const LENS_SIGMA: f64 = 0.75;
 /// Sensor noise, standard deviation in sRGB levels at mid grey, before the camera smooths it.
 const NOISE: f64 = 2.6;
 /// How far the shadow falls to the right and down, mm.
-const SHADOW_SHIFT: P = [4.0, -6.0];
+const SHADOW_SHIFT: PlanePoint = [4.0, -6.0];
 
 /// The photo and the true mask (255 where at least half of a pixel is garment).
-pub(crate) fn render(shot: &Shot, outline: &Outline) -> (RgbImage, GrayImage) {
+pub(crate) fn render(shot: &PhotoSetup, outline: &NamedOutline) -> (RgbImage, GrayImage) {
     let field = NearField::new(outline);
     let [w, h] = shot.size;
-    let rows: Vec<Vec<(Rgb, bool)>> =
+    let rows: Vec<Vec<(LinearColour, bool)>> =
         (0..h).into_par_iter().map(|y| shot.row(outline, &field, w, y)).collect();
     let mask = GrayImage::from_fn(w, h, |x, y| image::Luma([255 * u8::from(rows[y as usize][x as usize].1)]));
-    let light: Vec<Vec<Rgb>> = rows.into_iter().map(|r| r.into_iter().map(|p| p.0).collect()).collect();
+    let light: Vec<Vec<LinearColour>> =
+        rows.into_iter().map(|r| r.into_iter().map(|p| p.0).collect()).collect();
     (shot.develop(&blur(&light)), mask)
 }
 
-impl Shot {
-    fn row(&self, outline: &Outline, field: &NearField, w: u32, y: u32) -> Vec<(Rgb, bool)> {
+impl PhotoSetup {
+    fn row(&self, outline: &NamedOutline, field: &NearField, w: u32, y: u32) -> Vec<(LinearColour, bool)> {
         let py = (self.origin[1] - f64::from(y)) / self.px_per_mm;
         let (here, shifted) = (field.row(py), field.row(py - SHADOW_SHIFT[1]));
         let at = |x: u32| {
@@ -58,14 +59,14 @@ impl Shot {
         (0..w).map(at).collect()
     }
 
-    fn ground_at(&self, p: P, near: &Near, shifted: &Row) -> Rgb {
+    fn ground_at(&self, p: PlanePoint, near: &NearestEdge, shifted: &OutlineRow) -> LinearColour {
         let away = (-shifted.at(p[0] - SHADOW_SHIFT[0]).depth).max(0.0);
         let soft = 1.0 - 0.30 * (-away / 9.0).exp();
         let contact = 1.0 - 0.16 * (near.depth.min(0.0) / 2.0).exp();
         scale(self.ground.at(self.seed + 1000, p), soft * contact)
     }
 
-    fn cloth_at(&self, outline: &Outline, p: P, near: &Near) -> Rgb {
+    fn cloth_at(&self, outline: &NamedOutline, p: PlanePoint, near: &NearestEdge) -> LinearColour {
         // Cloth is never laid down quite straight: its print wanders by a millimetre or two.
         let wander = |k: u64| 1.6 * fractal(self.seed + 500 + k, p[0] / 75.0, p[1] / 75.0, 2);
         let printed = (self.print)(self.base, [p[0] + wander(0), p[1] + wander(1)]);
@@ -84,7 +85,7 @@ impl Shot {
 
     /// Sensor noise and eight bits. A camera averages its noise over neighbours, so it is grainy
     /// rather than salt and pepper.
-    fn develop(&self, light: &[Vec<Rgb>]) -> RgbImage {
+    fn develop(&self, light: &[Vec<LinearColour>]) -> RgbImage {
         let [w, h] = self.size;
         let grain = |x: u32, y: u32, k: u64| {
             let at = |dx: i64, dy: i64| gauss(self.seed + 77 + k, i64::from(x) + dx, i64::from(y) + dy);
@@ -107,11 +108,11 @@ impl Shot {
 }
 
 /// Gaussian blur in linear light, rows then columns, clamped at the border.
-fn blur(light: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
+fn blur(light: &[Vec<LinearColour>]) -> Vec<Vec<LinearColour>> {
     let weights: Vec<f64> =
         (-3..=3).map(|i| (-f64::from(i * i) / (2.0 * LENS_SIGMA * LENS_SIGMA)).exp()).collect();
     let total: f64 = weights.iter().sum();
-    let mean = |at: &dyn Fn(i64) -> Rgb| {
+    let mean = |at: &dyn Fn(i64) -> LinearColour| {
         let mut sum = [0.0; 3];
         for (i, weight) in weights.iter().enumerate() {
             let v = at(i as i64 - 3);
@@ -120,7 +121,7 @@ fn blur(light: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
         sum
     };
     let clamp = |i: i64, n: usize| i.clamp(0, n as i64 - 1) as usize;
-    let across: Vec<Vec<Rgb>> = light
+    let across: Vec<Vec<LinearColour>> = light
         .par_iter()
         .map(|row| (0..row.len()).map(|x| mean(&|d| row[clamp(x as i64 + d, row.len())])).collect())
         .collect();

@@ -1,7 +1,7 @@
 //! The truth that tests measure against: a one-bit mask and the outline in millimetres.
 
-use crate::garment::Outline;
-use crate::render::Shot;
+use crate::garment::NamedOutline;
+use crate::render::PhotoSetup;
 use image::GrayImage;
 use serde_json::json;
 
@@ -23,7 +23,7 @@ pub(crate) fn mask_png(mask: &GrayImage) -> Result<Vec<u8>, png::EncodingError> 
 }
 
 /// The outline with its pixel mapping, corners and edges, as JSON text.
-pub(crate) fn outline_json(shot: &Shot, outline: &Outline) -> String {
+pub(crate) fn outline_json(shot: &PhotoSetup, outline: &NamedOutline) -> String {
     let rounded = |p: &[f64; 2]| p.map(|v| (v * 1e3).round() / 1e3 + 0.0);
     let points: Vec<String> = outline.points.iter().map(|p| json!(rounded(p)).to_string()).collect();
     let corners: serde_json::Map<_, _> =

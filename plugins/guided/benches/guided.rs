@@ -3,13 +3,13 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use toile_core::{Context, testkit};
-use toile_guided::{By, guided};
+use toile_guided::{GuidedBy, guided};
 
 fn twelve_megapixels(c: &mut Criterion) {
     let photo = testkit::noisy_photo(4000, 3000).pixels;
     let mut group = c.benchmark_group("12 megapixels");
     group.sample_size(10);
-    for by in [By::Photo, By::Bilateral] {
+    for by in [GuidedBy::Photo, GuidedBy::Bilateral] {
         group.bench_function(format!("{by:?}"), |b| {
             b.iter(|| black_box(guided(&photo, by, 4, 12.0, &Context::quiet())));
         });

@@ -18,7 +18,7 @@ const STRIP: usize = 128;
 
 /// What guides the filter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum By {
+pub enum GuidedBy {
     /// Each channel by itself.
     Photo,
     /// Each channel by the same channel after a bilateral filter.
@@ -28,7 +28,7 @@ pub enum By {
 /// Filters a photo: windows of `radius` pixels, standard deviations below `noise` become flat.
 pub fn guided(
     photo: &RgbImage,
-    by: By,
+    by: GuidedBy,
     radius: usize,
     noise: f64,
     cx: &Context,
@@ -47,8 +47,8 @@ pub fn guided(
         let source = &photo.as_raw()[3 * w * rows.start..3 * w * rows.end];
         let height = rows.len();
         let guide = match by {
-            By::Photo => None,
-            By::Bilateral => Some(bilateral::smooth(photo, rows.clone(), noise, cx)?),
+            GuidedBy::Photo => None,
+            GuidedBy::Bilateral => Some(bilateral::smooth(photo, rows.clone(), noise, cx)?),
         };
         for c in 0..3 {
             let plane: Vec<f32> = source.iter().skip(c).step_by(3).map(|&v| f32::from(v)).collect();

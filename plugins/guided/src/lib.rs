@@ -4,14 +4,14 @@
 mod bilateral;
 mod filter;
 
-pub use filter::{By, guided};
+pub use filter::{GuidedBy, guided};
 
 use toile_core::prelude::*;
 
 /// What the filter follows.
 #[choice]
 #[derive(Copy, Eq)]
-pub enum Guide {
+pub enum FilterGuide {
     /// The photo itself: fastest, keeps some grain along edges.
     Photo,
     /// The photo after a small bilateral filter: cleaner along edges, about three times the time.
@@ -31,8 +31,8 @@ pub enum Guide {
 )]
 pub struct Guided {
     /// What the filter follows.
-    #[param(default = Guide::Bilateral, trades, way)]
-    pub guide: Guide,
+    #[param(default = FilterGuide::Bilateral, trades, way)]
+    pub guide: FilterGuide,
     /// Half the window's width.
     #[param(default = 4, min = 1, max = 100, unit = "px")]
     pub radius: u32,
@@ -45,8 +45,8 @@ pub struct Guided {
 impl Guided {
     fn run(&self, photo: &Photo, cx: &Context) -> Result<Photo, StageError> {
         let by = match self.guide {
-            Guide::Photo => By::Photo,
-            Guide::Bilateral => By::Bilateral,
+            FilterGuide::Photo => GuidedBy::Photo,
+            FilterGuide::Bilateral => GuidedBy::Bilateral,
         };
         Ok(photo.with_pixels(guided(&photo.pixels, by, self.radius as usize, self.noise, cx)?))
     }

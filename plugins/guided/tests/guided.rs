@@ -5,7 +5,7 @@ use image::{Rgb, RgbImage};
 use proptest::prelude::*;
 use std::path::Path;
 use toile_core::Context;
-use toile_guided::{By, Guided, guided};
+use toile_guided::{Guided, GuidedBy, guided};
 
 toile_core::contracts!(Guided);
 
@@ -26,7 +26,7 @@ fn spread(image: &RgbImage, columns: std::ops::Range<u32>) -> f64 {
 
 #[test]
 fn grain_goes_and_the_edge_stays() {
-    for (by, most) in [(By::Photo, 0.35), (By::Bilateral, 0.3)] {
+    for (by, most) in [(GuidedBy::Photo, 0.35), (GuidedBy::Bilateral, 0.3)] {
         let (before, after) = (halves(), guided(&halves(), by, 4, 12.0, &Context::quiet()).unwrap());
         assert!(spread(&after, 5..20) < most * spread(&before, 5..20), "{by:?}: {}", spread(&after, 5..20));
         let step = f64::from(after.get_pixel(31, 20)[0]) - f64::from(after.get_pixel(28, 20)[0]);
@@ -37,14 +37,19 @@ fn grain_goes_and_the_edge_stays() {
 #[test]
 fn a_bilateral_guide_takes_more_grain_off_along_an_edge() {
     let along = |by| spread(&guided(&halves(), by, 4, 12.0, &Context::quiet()).unwrap(), 26..29);
-    assert!(along(By::Bilateral) < 0.6 * along(By::Photo), "{} {}", along(By::Bilateral), along(By::Photo));
+    assert!(
+        along(GuidedBy::Bilateral) < 0.6 * along(GuidedBy::Photo),
+        "{} {}",
+        along(GuidedBy::Bilateral),
+        along(GuidedBy::Photo)
+    );
 }
 
 #[test]
 fn strips_leave_no_seam() {
     let tall = RgbImage::from_fn(24, 300, |x, y| Rgb([((x * 7919 + y * 104_729) % 97) as u8; 3]));
     let top = |h: u32| image::imageops::crop_imm(&tall, 0, 0, 24, h).to_image();
-    for by in [By::Photo, By::Bilateral] {
+    for by in [GuidedBy::Photo, GuidedBy::Bilateral] {
         let [whole, part] = [300, 200].map(|h| guided(&top(h), by, 6, 12.0, &Context::quiet()).unwrap());
         let same = |y: u32| (0..24).all(|x| whole.get_pixel(x, y) == part.get_pixel(x, y));
         assert!((0..180).all(same), "{by:?}");
@@ -77,7 +82,7 @@ proptest! {
     #[test]
     fn any_picture_stays_within_its_own_range(
         (w, h) in (1u32..20, 1u32..20), radius in 1usize..40, noise in 0.1..255.0f64, seed in any::<u32>(),
-        by in prop_oneof![Just(By::Photo), Just(By::Bilateral)],
+        by in prop_oneof![Just(GuidedBy::Photo), Just(GuidedBy::Bilateral)],
     ) {
         let level = |x: u32, y: u32| (x.wrapping_mul(seed) ^ y.wrapping_mul(seed.rotate_left(9))) as u8;
         let photo = RgbImage::from_fn(w, h, |x, y| Rgb([level(x, y), 255 - level(y, x), 7]));

@@ -11,7 +11,7 @@ use toile_core::artifact::{Photo, Point2};
 const MARGIN: f64 = 8.0;
 
 /// A crop with the pixels that the panel covers.
-pub(crate) struct Crop {
+pub(crate) struct PanelCrop {
     pub(crate) pixels: RgbImage,
     /// Row by row.
     pub(crate) inside: Vec<bool>,
@@ -20,7 +20,7 @@ pub(crate) struct Crop {
     origin: Point2,
 }
 
-impl Crop {
+impl PanelCrop {
     /// Around a panel, its longer side at most `size`; `None` where the panel covers no pixel of
     /// the photo.
     pub(crate) fn of(photo: &Photo, places: &[Point2], triangles: &[[u32; 3]], size: u32) -> Option<Self> {
@@ -59,7 +59,7 @@ impl Crop {
             }
         }
         let origin = Point2::new(f64::from(left), f64::from(top));
-        inside.contains(&true).then(|| Crop { pixels, inside, step: f64::from(step), origin })
+        inside.contains(&true).then(|| PanelCrop { pixels, inside, step: f64::from(step), origin })
     }
 
     /// Texture coordinates of a photo pixel: (0, 0) and (1, 1) are the outer corners of the first

@@ -40,16 +40,16 @@ pub struct Settings {
 }
 
 /// A grid cell: weight, and weighted sum of levels.
-type Cell = [f64; 2];
+type WeightedLevel = [f64; 2];
 
 /// Homogeneous values over place and level.
-struct Grid {
+struct BilateralGrid {
     size: [usize; 3],
     /// Pixels a cell.
     cell: f64,
     /// Levels a cell.
     range: f64,
-    cells: Vec<Cell>,
+    cells: Vec<WeightedLevel>,
 }
 
 /// Irons the pixels that `inside` marks; gives the picture and the root mean square of what was
@@ -62,7 +62,7 @@ pub fn iron(
 ) -> Result<(RgbImage, f64), StageError> {
     let (w, h) = pixels.dimensions();
     let levels: Vec<f64> = pixels.pixels().map(|p| level(p.0)).collect();
-    let fine = Grid::of(&levels, inside, (w as usize, h as usize), settings);
+    let fine = BilateralGrid::of(&levels, inside, (w as usize, h as usize), settings);
     cx.check()?;
     let near = fine.blurred(1, 1, 1, cx)?;
     let far = near.blurred(((settings.reach / near.cell).round() as usize).max(1), FAR_LEVELS, 3, cx)?;
@@ -104,7 +104,7 @@ pub(crate) fn encoded(x: f64) -> u8 {
     (v * 255.0).round() as u8
 }
 
-impl Grid {
+impl BilateralGrid {
     fn of(levels: &[f64], inside: &[bool], (w, h): (usize, usize), settings: &Settings) -> Self {
         let range = settings.contrast / LEVELS;
         let depth = ((-BLACK.ln()) / range).ceil() + 2.0;
@@ -113,7 +113,7 @@ impl Grid {
         let cell = settings.detail.max(least).max(1.0);
         let count = |n: usize| (n as f64 / cell).ceil() as usize + 2;
         let size = [count(w), count(h), depth as usize];
-        let mut grid = Grid { size, cell, range, cells: vec![[0.0; 2]; size.iter().product()] };
+        let mut grid = BilateralGrid { size, cell, range, cells: vec![[0.0; 2]; size.iter().product()] };
         for (k, &l) in levels.iter().enumerate().filter(|(k, _)| inside[*k]) {
             for (n, share) in grid.around((k % w) as f64, (k / w) as f64, l) {
                 grid.cells[n][0] += share;
@@ -146,7 +146,13 @@ impl Grid {
 
     /// Boxes of `radius` cells in place and `levels` in level, `passes` times (three are nearly a
     /// Gaussian).
-    fn blurred(&self, radius: usize, levels: usize, passes: usize, cx: &Context) -> Result<Grid, StageError> {
+    fn blurred(
+        &self,
+        radius: usize,
+        levels: usize,
+        passes: usize,
+        cx: &Context,
+    ) -> Result<BilateralGrid, StageError> {
         let [nx, ny, nl] = self.size;
         let mut cells = self.cells.clone();
         for _ in 0..passes {
@@ -169,12 +175,12 @@ impl Grid {
                 }
             });
         }
-        Ok(Grid { cells, size: self.size, cell: self.cell, range: self.range })
+        Ok(BilateralGrid { cells, size: self.size, cell: self.cell, range: self.range })
     }
 }
 
 /// Sums over `radius` cells on both sides.
-fn boxed(line: &mut [Cell], radius: usize) {
+fn boxed(line: &mut [WeightedLevel], radius: usize) {
     let n = line.len();
     let mut sums = vec![[0.0; 2]; n + 1];
     for (i, cell) in line.iter().enumerate() {

@@ -12,7 +12,7 @@ mod iron;
 
 pub use iron::{Settings, iron};
 
-use crop::Crop;
+use crop::PanelCrop;
 use toile_core::prelude::*;
 
 /// Dresses each panel in its own photo, with the shading of wrinkles taken out.
@@ -101,7 +101,7 @@ impl Ironed {
         let mut uv = Vec::new();
         let mut texture = None;
         if let Some(photo) = photo {
-            let crop = Crop::of(photo, &panel.photo_px, &triangles, self.size)
+            let crop = PanelCrop::of(photo, &panel.photo_px, &triangles, self.size)
                 .ok_or_else(|| beside(&panel.name, &photo.file))?;
             uv = panel.photo_px.iter().map(|px| crop.uv(px)).collect();
             let scale = px_per_metre(garment, panel, &triangles) / crop.step;
@@ -127,7 +127,12 @@ impl Ironed {
     }
 
     /// The ironed crop, its colours carried past its rim; `None` where the panel covers no pixel.
-    fn texture(&self, crop: Crop, scale: f64, cx: &Context) -> Result<Option<image::RgbImage>, StageError> {
+    fn texture(
+        &self,
+        crop: PanelCrop,
+        scale: f64,
+        cx: &Context,
+    ) -> Result<Option<image::RgbImage>, StageError> {
         cx.check()?;
         let inner = crop.eroded((self.inset.metres() * scale).round() as usize);
         // A panel thinner than twice the inset has no inner part: then its whole inside must do.

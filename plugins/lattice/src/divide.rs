@@ -19,7 +19,7 @@ const INNER_CORNER: f64 = 20.0;
 
 /// The segments of a mesh-to-be.
 #[derive(Debug, Default)]
-pub(crate) struct Division {
+pub(crate) struct MeshSegments {
     /// Vertices on the loops, then those on inner lines alone.
     pub(crate) points: Vec<Point2>,
     /// The outer loop counter-clockwise, then the holes clockwise.
@@ -30,7 +30,7 @@ pub(crate) struct Division {
     pub(crate) chains: Vec<InnerChain>,
 }
 
-impl Division {
+impl MeshSegments {
     /// Segments of the loops, the cloth on their left.
     pub(crate) fn loop_segments(&self) -> Vec<[u32; 2]> {
         let closed = |l: &Vec<u32>| (0..l.len()).map(|k| [l[k], l[(k + 1) % l.len()]]).collect::<Vec<_>>();
@@ -45,7 +45,7 @@ impl Division {
 }
 
 /// A polyline by arc length, with the places that must become vertices.
-struct Stretch {
+struct MarkedStretch {
     name: Option<String>,
     points: Vec<Point2>,
     arc: Vec<f64>,
@@ -55,14 +55,14 @@ struct Stretch {
     marks: Vec<f64>,
 }
 
-impl Stretch {
+impl MarkedStretch {
     fn new(name: Option<&str>, points: Vec<Point2>, corners: &[usize], gauge: Option<Gauge>) -> Self {
         let mut arc = vec![0.0];
         points.windows(2).for_each(|w| arc.push(arc[arc.len() - 1] + (w[1] - w[0]).norm()));
         let marks = corners.iter().map(|&k| arc[k]).collect();
         let gauge = gauge.unwrap_or_else(|| Gauge::of(&points, corners));
         let closed = points.first() == points.last();
-        Stretch { name: name.map(str::to_owned), points, arc, gauge, closed, marks }
+        MarkedStretch { name: name.map(str::to_owned), points, arc, gauge, closed, marks }
     }
 
     fn length(&self) -> f64 {
@@ -135,11 +135,11 @@ fn place(length: f64, n: usize, marks: &[f64]) -> Vec<f64> {
 }
 
 /// Divides a checked outline at an edge length `h` (metres).
-pub(crate) fn divide(outline: &Outline, h: f64) -> Result<Division, StageError> {
-    let mut loops: Vec<Vec<Stretch>> = vec![outer(outline)];
+pub(crate) fn divide(outline: &Outline, h: f64) -> Result<MeshSegments, StageError> {
+    let mut loops: Vec<Vec<MarkedStretch>> = vec![outer(outline)];
     loops.extend(outline.holes.iter().map(|hole| pieces(&clockwise(hole), &hole_stops(hole))));
     let lines = lines(outline, &mut loops, h);
-    let mut division = Division::default();
+    let mut division = MeshSegments::default();
     for stretches in &loops {
         add_loop(&mut division, stretches, h)?;
     }
@@ -186,15 +186,15 @@ fn walk(points: &[Point2], from: usize, to: usize) -> Vec<Point2> {
 }
 
 /// Unnamed stretches between stops.
-fn pieces(points: &[Point2], stops: &[usize]) -> Vec<Stretch> {
+fn pieces(points: &[Point2], stops: &[usize]) -> Vec<MarkedStretch> {
     let stops = if stops.is_empty() { &[0] } else { stops };
     let next = stops.iter().cycle().skip(1);
-    let piece = |(&a, &b): (&usize, &usize)| Stretch::new(None, walk(points, a, b), &[], None);
+    let piece = |(&a, &b): (&usize, &usize)| MarkedStretch::new(None, walk(points, a, b), &[], None);
     stops.iter().zip(next).map(piece).filter(|s| s.length() > 0.0).collect()
 }
 
 /// The outer loop: named edges in their order, unnamed stretches where they leave a gap.
-fn outer(outline: &Outline) -> Vec<Stretch> {
+fn outer(outline: &Outline) -> Vec<MarkedStretch> {
     let (points, corners) = (&outline.outer.points, &outline.outer.corners);
     let n = points.len();
     let mut edges: Vec<&Edge> = outline.edges.iter().collect();
@@ -213,13 +213,13 @@ fn outer(outline: &Outline) -> Vec<Stretch> {
     let mut out = Vec::new();
     for (k, e) in edges.iter().enumerate() {
         let inner = between(e.start, e.end);
-        out.push(Stretch::new(Some(&e.name), walk(points, e.start, e.end), &inner, Some(e.gauge)));
+        out.push(MarkedStretch::new(Some(&e.name), walk(points, e.start, e.end), &inner, Some(e.gauge)));
         let next = edges[(k + 1) % edges.len()].start;
         if next != e.end {
             let mut stops = vec![e.end];
             stops.extend(between(e.end, next).iter().map(|k| (e.end + k) % n));
             stops.push(next);
-            let gap = stops.windows(2).map(|w| Stretch::new(None, walk(points, w[0], w[1]), &[], None));
+            let gap = stops.windows(2).map(|w| MarkedStretch::new(None, walk(points, w[0], w[1]), &[], None));
             out.extend(gap.filter(|s| s.length() > 0.0));
         }
     }
@@ -227,7 +227,7 @@ fn outer(outline: &Outline) -> Vec<Stretch> {
 }
 
 /// Inner lines with their ends laid onto what they touch, which gets a mark there.
-fn lines(outline: &Outline, loops: &mut [Vec<Stretch>], h: f64) -> Vec<Stretch> {
+fn lines(outline: &Outline, loops: &mut [Vec<MarkedStretch>], h: f64) -> Vec<MarkedStretch> {
     let slack = SNAP * h;
     let mut all: Vec<Vec<Point2>> = outline.inner.iter().map(|l| l.points.clone()).collect();
     for points in &mut all {
@@ -243,7 +243,8 @@ fn lines(outline: &Outline, loops: &mut [Vec<Stretch>], h: f64) -> Vec<Stretch> 
         }
     }
     let own = outline.inner.iter().map(|l| l.gauge);
-    let mut lines: Vec<Stretch> = all.into_iter().zip(own).map(|(p, g)| inner_stretch(p, h, g)).collect();
+    let mut lines: Vec<MarkedStretch> =
+        all.into_iter().zip(own).map(|(p, g)| inner_stretch(p, h, g)).collect();
     let ends: Vec<[Point2; 2]> = lines.iter().map(|l| [l.points[0], l.points[l.points.len() - 1]]).collect();
     for (i, line) in lines.iter_mut().enumerate() {
         for end in ends.iter().enumerate().filter(|(j, _)| *j != i).flat_map(|(_, e)| e) {
@@ -257,17 +258,17 @@ fn lines(outline: &Outline, loops: &mut [Vec<Stretch>], h: f64) -> Vec<Stretch> 
     lines
 }
 
-fn inner_stretch(points: Vec<Point2>, h: f64, gauge: Option<Gauge>) -> Stretch {
+fn inner_stretch(points: Vec<Point2>, h: f64, gauge: Option<Gauge>) -> MarkedStretch {
     let joint = |k: &usize| {
         let (u, v) = (points[*k] - points[k - 1], points[k + 1] - points[*k]);
         u.perp(&v).atan2(u.dot(&v)).abs() > INNER_CORNER.to_radians() || u.norm().min(v.norm()) >= h / 2.0
     };
     let corners: Vec<usize> = (1..points.len() - 1).filter(joint).collect();
-    Stretch::new(None, points, &corners, gauge)
+    MarkedStretch::new(None, points, &corners, gauge)
 }
 
 /// Two legs of a dart meet in a point and are sewn to each other: both take what either needs.
-fn share_darts(outline: &Outline, lines: &mut [Stretch], ends: &[[Point2; 2]], slack: f64) {
+fn share_darts(outline: &Outline, lines: &mut [MarkedStretch], ends: &[[Point2; 2]], slack: f64) {
     let dart = |i: usize| outline.inner[i].kind == InnerKind::Dart;
     let own: Vec<Gauge> = lines.iter().map(|l| l.gauge).collect();
     for i in (0..lines.len()).filter(|&i| dart(i)) {
@@ -278,7 +279,7 @@ fn share_darts(outline: &Outline, lines: &mut [Stretch], ends: &[[Point2; 2]], s
     }
 }
 
-fn add_loop(division: &mut Division, stretches: &[Stretch], h: f64) -> Result<(), StageError> {
+fn add_loop(division: &mut MeshSegments, stretches: &[MarkedStretch], h: f64) -> Result<(), StageError> {
     let first = division.points.len() as u32;
     let mut named = Vec::new();
     for s in stretches {
@@ -296,7 +297,12 @@ fn add_loop(division: &mut Division, stretches: &[Stretch], h: f64) -> Result<()
     Ok(())
 }
 
-fn add_line(division: &mut Division, line: &InnerLine, s: &Stretch, h: f64) -> Result<(), StageError> {
+fn add_line(
+    division: &mut MeshSegments,
+    line: &InnerLine,
+    s: &MarkedStretch,
+    h: f64,
+) -> Result<(), StageError> {
     let arcs = s.cut(h)?;
     let last = arcs.len() - 1;
     let mut vertices = Vec::with_capacity(arcs.len());

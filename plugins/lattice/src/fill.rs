@@ -4,7 +4,7 @@
 //! half-open in y so that no row is torn; points nearer to a segment than [`CLEAR`] are left out.
 //! Linear in points and segments.
 
-use crate::divide::Division;
+use crate::divide::MeshSegments;
 use toile_core::prelude::*;
 
 /// Lattice points keep this distance from every segment, in edge lengths: less makes needles at the
@@ -22,7 +22,7 @@ pub(crate) struct Seed {
     pub(crate) near: bool,
 }
 
-struct Rows {
+struct LatticeRows {
     low: Point2,
     h: f64,
     dy: f64,
@@ -30,14 +30,14 @@ struct Rows {
     rows: usize,
 }
 
-impl Rows {
+impl LatticeRows {
     /// Rows over the outline's box, centred on it.
     fn over(outline: &Outline, h: f64) -> Self {
         let (low, high) = outline.bounds();
         let (span, dy) = (high - low, h * 0.75f64.sqrt());
         let (columns, rows) = ((span.x / h) as usize + 2, (span.y / dy) as usize + 1);
         let size = Vector2::new((columns - 1) as f64 * h, (rows - 1) as f64 * dy);
-        Rows { low: low + (span - size) / 2.0, h, dy, columns, rows }
+        LatticeRows { low: low + (span - size) / 2.0, h, dy, columns, rows }
     }
 
     fn y(&self, row: usize) -> f64 {
@@ -61,7 +61,7 @@ impl Rows {
     }
 
     /// Which points lie inside the loops, row by row.
-    fn inside(&self, division: &Division) -> Vec<bool> {
+    fn inside(&self, division: &MeshSegments) -> Vec<bool> {
         let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); self.rows];
         for [a, b] in division.loop_segments().iter().map(|s| s.map(|v| division.points[v as usize])) {
             for row in self.between(a.y.min(b.y), a.y.max(b.y)) {
@@ -83,7 +83,7 @@ impl Rows {
     }
 
     /// Distance of every point to the nearest segment, as far as `reach`.
-    fn distances(&self, division: &Division, reach: f64) -> Vec<f64> {
+    fn distances(&self, division: &MeshSegments, reach: f64) -> Vec<f64> {
         let mut distance = vec![f64::INFINITY; self.rows * self.columns];
         for [a, b] in division.segments().iter().map(|s| s.map(|v| division.points[v as usize])) {
             for row in self.between(a.y.min(b.y) - reach, a.y.max(b.y) + reach) {
@@ -105,8 +105,8 @@ fn to_segment(p: Point2, a: Point2, b: Point2) -> f64 {
 }
 
 /// The lattice's points that become vertices, row by row.
-pub(crate) fn fill(outline: &Outline, division: &Division, h: f64) -> Vec<Seed> {
-    let rows = Rows::over(outline, h);
+pub(crate) fn fill(outline: &Outline, division: &MeshSegments, h: f64) -> Vec<Seed> {
+    let rows = LatticeRows::over(outline, h);
     let (inside, distance) = (rows.inside(division), rows.distances(division, BORDER * h));
     let kept = (0..inside.len()).filter(|&k| inside[k] && distance[k] > CLEAR * h);
     let seed = |k: usize| {

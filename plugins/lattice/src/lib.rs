@@ -15,9 +15,9 @@ mod divide;
 mod fill;
 mod triangulate;
 
-use divide::Division;
+use divide::MeshSegments;
 use toile_core::prelude::*;
-use triangulate::Meshed;
+use triangulate::LatticeMesh;
 
 /// Fills the panel with a lattice of equilateral triangles.
 ///
@@ -57,7 +57,7 @@ impl LatticeMesher {
 }
 
 /// Puts the panel together; inner lines must have become mesh edges.
-fn assemble(outline: &Outline, division: Division, meshed: Meshed) -> Result<Panel, StageError> {
+fn assemble(outline: &Outline, division: MeshSegments, meshed: LatticeMesh) -> Result<Panel, StageError> {
     let mut sides: Vec<[u32; 2]> = meshed
         .triangles
         .iter()

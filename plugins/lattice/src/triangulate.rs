@@ -8,7 +8,7 @@
 //! segments). Cost: n log n a round. Limits: an angle that two segments of the outline force stays.
 
 use crate::check::orient;
-use crate::divide::Division;
+use crate::divide::MeshSegments;
 use crate::fill::Seed;
 use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 use toile_core::prelude::*;
@@ -28,18 +28,18 @@ const FINE: f64 = 38.0;
 const STILL: f64 = 0.01;
 
 /// Vertices, the division's first, and triangles.
-pub(crate) struct Meshed {
+pub(crate) struct LatticeMesh {
     pub(crate) points: Vec<Point2>,
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 /// Meshes a division and its seeds at an edge length `h`.
 pub(crate) fn mesh(
-    division: &Division,
+    division: &MeshSegments,
     seeds: Vec<Seed>,
     h: f64,
     cx: &Context,
-) -> Result<Meshed, StageError> {
+) -> Result<LatticeMesh, StageError> {
     let fixed = division.points.len();
     let mut points = division.points.clone();
     points.extend(seeds.iter().map(|s| s.at));
@@ -58,7 +58,7 @@ pub(crate) fn mesh(
         triangles = inside_triangles(&points, &loops, &segments, cx)?;
     }
     let (points, triangles) = without_unused(points, triangles, fixed);
-    Ok(Meshed { points, triangles })
+    Ok(LatticeMesh { points, triangles })
 }
 
 fn inside_triangles(

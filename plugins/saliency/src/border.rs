@@ -22,7 +22,7 @@ const FLAT: f64 = 1e-3;
 const OPAQUE: u8 = 128;
 
 /// A line through the colours at a pixel: three slopes and what is added.
-type Line = Vector4<f64>;
+type ColourLine = Vector4<f64>;
 
 /// The mask of a photo: 255 where the map, drawn to the photo's edges, is above the threshold.
 /// `guide` is that photo's.
@@ -59,13 +59,13 @@ fn place(i: u32, n: u32) -> (usize, f64) {
 }
 
 /// The lines along a row of the photo.
-fn row(lines: &[Line], (i, share): (usize, f64)) -> Vec<Line> {
+fn row(lines: &[ColourLine], (i, share): (usize, f64)) -> Vec<ColourLine> {
     let at = |i: usize| &lines[i * SIDE..(i + 1) * SIDE];
     at(i).iter().zip(at((i + 1).min(SIDE - 1))).map(|(a, b)| a.lerp(b, share)).collect()
 }
 
 /// The line of every pixel of the map: the mean of those of all windows that hold it.
-fn lines(map: &Map, guide: &Guide) -> Vec<Line> {
+fn lines(map: &Map, guide: &Guide) -> Vec<ColourLine> {
     let colours: Vec<Vector3<f64>> = guide.pixels().pixels().map(|p| colour(&p.0)).collect();
     let values: Vec<f64> = map.values().iter().map(|v| f64::from(*v)).collect();
     let both = || colours.iter().zip(&values);

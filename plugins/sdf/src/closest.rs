@@ -108,7 +108,7 @@ fn between_ends(a: &[Point3; 2], b: &[Point3; 2]) -> (f64, f64) {
 
 /// How two small pieces of cloth lie to each other.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Proximity {
+pub(crate) struct PieceProximity {
     /// The first side's positive, sum zero.
     pub(crate) weights: [f64; 4],
     /// Unit normal from the second side to the first.
@@ -118,24 +118,27 @@ pub(crate) struct Proximity {
 }
 
 /// A vertex against a triangle.
-pub(crate) fn vertex_triangle(v: &Point3, t: &[Point3; 3]) -> Proximity {
+pub(crate) fn vertex_triangle(v: &Point3, t: &[Point3; 3]) -> PieceProximity {
     let w = on_triangle(v, t);
     let gap = v - at(t, &w);
     let (ab, ac) = (t[1] - t[0], t[2] - t[0]);
     let along = if ab.norm_squared() >= ac.norm_squared() { ab } else { ac };
     let normal = direction(&gap, size(v, &t[0]), ab.cross(&ac), &along);
-    Proximity { weights: [1.0, -w[0], -w[1], -w[2]], normal, distance: gap.norm() }
+    PieceProximity { weights: [1.0, -w[0], -w[1], -w[2]], normal, distance: gap.norm() }
 }
 
 /// An edge against an edge, and whether both closest points lie between the ends.
-pub(crate) fn edge_edge(a: &[Point3; 2], b: &[Point3; 2]) -> (Proximity, bool) {
+pub(crate) fn edge_edge(a: &[Point3; 2], b: &[Point3; 2]) -> (PieceProximity, bool) {
     let (s, t) = between_segments(a, b);
     let (da, db) = (a[1] - a[0], b[1] - b[0]);
     let gap = (a[0] + da * s) - (b[0] + db * t);
     let along = if da.norm_squared() >= db.norm_squared() { da } else { db };
     let normal = direction(&gap, size(&a[0], &b[0]), da.cross(&db), &along);
     let inside = |s: f64| s > 0.0 && s < 1.0;
-    (Proximity { weights: [1.0 - s, s, t - 1.0, -t], normal, distance: gap.norm() }, inside(s) && inside(t))
+    (
+        PieceProximity { weights: [1.0 - s, s, t - 1.0, -t], normal, distance: gap.norm() },
+        inside(s) && inside(t),
+    )
 }
 
 fn size(p: &Point3, q: &Point3) -> f64 {

@@ -7,7 +7,7 @@
 //! of triangles tests what it owns. Cost: n log n for the sorting, then the pairs. Limits:
 //! triangles of very different sizes share one cell size, the mean one's.
 
-use crate::closest::{Proximity, edge_edge, vertex_triangle};
+use crate::closest::{PieceProximity, edge_edge, vertex_triangle};
 use rayon::prelude::*;
 use robust::{Coord3D, orient3d};
 use toile_core::artifact::{Point3, SelfContact, Vector3};
@@ -40,30 +40,30 @@ impl Box3 {
     }
 }
 
-type Cell = [i32; 3];
+type CellIndex = [i32; 3];
 
 /// What a triangle owns: corners, and edges from each corner to the next.
 #[derive(Debug, Clone, Copy, Default)]
-struct Owned {
+struct OwnedFeatures {
     corners: [bool; 3],
     edges: [bool; 3],
 }
 
 /// A cloth as it is asked about.
-pub(crate) struct Cloth<'a> {
+pub(crate) struct ClothCells<'a> {
     positions: &'a [Point3],
     triangles: &'a [[u32; 3]],
     reach: f64,
     boxes: Vec<Option<Box3>>,
-    owned: Vec<Owned>,
+    owned: Vec<OwnedFeatures>,
     cell: f64,
     low: Point3,
 }
 
 /// A pair of features nearer than the reach.
-struct Pair {
+struct FeaturePair {
     nodes: [u32; 4],
-    found: Proximity,
+    found: PieceProximity,
     kind: PairKind,
 }
 
@@ -75,7 +75,7 @@ enum PairKind {
     EdgesAtEnds,
 }
 
-impl<'a> Cloth<'a> {
+impl<'a> ClothCells<'a> {
     pub(crate) fn new(positions: &'a [Point3], triangles: &'a [[u32; 3]], reach: f64) -> Self {
         // A vertex that is no finite number takes its triangles with it.
         let usable = |t: &[u32; 3]| {
@@ -93,10 +93,10 @@ impl<'a> Cloth<'a> {
         let whole = (high - low).amax();
         let cell = (CELL * mean).max(largest / MOST_CELLS).max(whole * 1e-6).max(f64::MIN_POSITIVE);
         let owned = ownership(triangles, &boxes, positions.len());
-        Cloth { positions, triangles, reach, boxes, owned, cell, low }
+        ClothCells { positions, triangles, reach, boxes, owned, cell, low }
     }
 
-    fn cell_of(&self, p: &Point3) -> Cell {
+    fn cell_of(&self, p: &Point3) -> CellIndex {
         let q = (p - self.low) / self.cell;
         [q.x.floor() as i32, q.y.floor() as i32, q.z.floor() as i32]
     }
@@ -104,7 +104,7 @@ impl<'a> Cloth<'a> {
     /// Visits every pair of usable triangles whose boxes meet, lower first; the order of what is
     /// pushed depends on the cloth alone.
     fn pairs<T: Send>(&self, visit: impl Fn(u32, u32, &mut Vec<T>) + Sync) -> Vec<T> {
-        let mut entries: Vec<(Cell, u32)> = Vec::with_capacity(4 * self.boxes.len());
+        let mut entries: Vec<(CellIndex, u32)> = Vec::with_capacity(4 * self.boxes.len());
         for (t, b) in self.boxes.iter().enumerate().filter_map(|(t, b)| b.map(|b| (t, b))) {
             let (from, to) = (self.cell_of(&b.low), self.cell_of(&b.high));
             for x in from[0]..=to[0] {
@@ -114,7 +114,7 @@ impl<'a> Cloth<'a> {
             }
         }
         entries.par_sort_unstable();
-        let cells: Vec<&[(Cell, u32)]> =
+        let cells: Vec<&[(CellIndex, u32)]> =
             entries.chunk_by(|a, b| a.0 == b.0).filter(|c| c.len() > 1).collect();
         let parts: Vec<Vec<T>> = cells
             .par_chunks(CHUNK)
@@ -129,7 +129,7 @@ impl<'a> Cloth<'a> {
 
     fn pairs_of_cell<T>(
         &self,
-        cell: &[(Cell, u32)],
+        cell: &[(CellIndex, u32)],
         visit: &impl Fn(u32, u32, &mut Vec<T>),
         out: &mut Vec<T>,
     ) {
@@ -144,7 +144,7 @@ impl<'a> Cloth<'a> {
         }
     }
 
-    fn close_pairs(&self) -> Vec<Pair> {
+    fn close_pairs(&self) -> Vec<FeaturePair> {
         self.pairs(|a, b, out| {
             self.vertices_of(a, b, out);
             self.vertices_of(b, a, out);
@@ -157,7 +157,7 @@ impl<'a> Cloth<'a> {
     }
 
     /// The vertices that `a` owns against the triangle `b`.
-    fn vertices_of(&self, a: u32, b: u32, out: &mut Vec<Pair>) {
+    fn vertices_of(&self, a: u32, b: u32, out: &mut Vec<FeaturePair>) {
         let (ta, tb) = (self.triangles[a as usize], self.triangles[b as usize]);
         let corners = tb.map(|i| self.at(i));
         let near = Box3::of(&corners).widened(self.reach);
@@ -170,7 +170,7 @@ impl<'a> Cloth<'a> {
         }
     }
 
-    fn edges_of(&self, a: u32, b: u32, out: &mut Vec<Pair>) {
+    fn edges_of(&self, a: u32, b: u32, out: &mut Vec<FeaturePair>) {
         let side = |t: u32, k: usize| {
             let nodes = self.triangles[t as usize];
             let (i, j) = (nodes[k], nodes[(k + 1) % 3]);
@@ -192,9 +192,9 @@ impl<'a> Cloth<'a> {
         }
     }
 
-    fn keep(&self, nodes: [u32; 4], found: Proximity, kind: PairKind, out: &mut Vec<Pair>) {
+    fn keep(&self, nodes: [u32; 4], found: PieceProximity, kind: PairKind, out: &mut Vec<FeaturePair>) {
         if found.distance < self.reach {
-            out.push(Pair { nodes, found, kind });
+            out.push(FeaturePair { nodes, found, kind });
         }
     }
 
@@ -203,12 +203,12 @@ impl<'a> Cloth<'a> {
     pub(crate) fn contacts(&self, out: &mut Vec<SelfContact>) {
         let pairs = self.close_pairs();
         let vertices = pairs.iter().filter(|p| p.kind == PairKind::VertexTriangle);
-        let mut keyed: Vec<([u32; 4], &Pair)> = vertices.map(|p| (features(p), p)).collect();
+        let mut keyed: Vec<([u32; 4], &FeaturePair)> = vertices.map(|p| (features(p), p)).collect();
         keyed.sort_unstable_by_key(|(key, p)| (*key, p.nodes));
         keyed.dedup_by_key(|(key, _)| *key);
-        let mut vertices: Vec<&Pair> = keyed.into_iter().map(|(_, p)| p).collect();
+        let mut vertices: Vec<&FeaturePair> = keyed.into_iter().map(|(_, p)| p).collect();
         vertices.sort_unstable_by_key(|p| p.nodes);
-        let mut edges: Vec<&Pair> = pairs.iter().filter(|p| p.kind == PairKind::EdgesInside).collect();
+        let mut edges: Vec<&FeaturePair> = pairs.iter().filter(|p| p.kind == PairKind::EdgesInside).collect();
         edges.sort_unstable_by_key(|p| p.nodes);
         out.extend(vertices.into_iter().chain(edges).map(|p| SelfContact {
             vertices: p.nodes,
@@ -257,7 +257,7 @@ impl<'a> Cloth<'a> {
 
 /// What makes a vertex-triangle pair the same as another: the nodes that carry weight, from
 /// whichever side two single vertices were seen.
-fn features(pair: &Pair) -> [u32; 4] {
+fn features(pair: &FeaturePair) -> [u32; 4] {
     const NONE: u32 = u32::MAX;
     let [v, t @ ..] = pair.nodes;
     let mut near = [0, 1, 2].map(|k| if pair.found.weights[k + 1] == 0.0 { NONE } else { t[k] });
@@ -269,8 +269,8 @@ fn features(pair: &Pair) -> [u32; 4] {
 }
 
 /// The first usable triangle that has a corner or an edge owns it.
-fn ownership(triangles: &[[u32; 3]], boxes: &[Option<Box3>], vertices: usize) -> Vec<Owned> {
-    let mut owned = vec![Owned::default(); triangles.len()];
+fn ownership(triangles: &[[u32; 3]], boxes: &[Option<Box3>], vertices: usize) -> Vec<OwnedFeatures> {
+    let mut owned = vec![OwnedFeatures::default(); triangles.len()];
     let mut taken = vec![false; vertices];
     let mut edges = Vec::with_capacity(3 * triangles.len());
     for (t, nodes) in triangles.iter().enumerate().filter(|(t, _)| boxes[*t].is_some()) {

@@ -41,7 +41,7 @@ pub struct Reading {
 
 /// Signed distances at the nodes of a grid.
 #[derive(Debug)]
-pub struct Field {
+pub struct DistanceField {
     low: Point3,
     cell: f64,
     size: [usize; 3],
@@ -51,13 +51,13 @@ pub struct Field {
     skin: Skin,
 }
 
-impl Field {
+impl DistanceField {
     /// The field of a body with nodes `cell` metres apart.
     ///
     /// Errors: a body that is not closed; a grid of more than 40 million nodes.
     pub fn of(body: &Body, cell: f64, cx: &Context) -> Result<Self, StageError> {
         let skin = Skin::of(body)?;
-        let mut field = Field::around(body, cell, skin)?;
+        let mut field = DistanceField::around(body, cell, skin)?;
         cx.progress(0.1, format!("{} million nodes", field.nodes() as f64 / 1e6));
         let mut closest = field.band(&field.skin, cx)?;
         let known: Vec<bool> = closest.iter().map(|t| *t != NONE).collect();
@@ -85,7 +85,7 @@ impl Field {
             .at("cell"));
         }
         let size = [counts.x as usize, counts.y as usize, counts.z as usize];
-        Ok(Field { low: low - room, cell, size, values: Vec::new(), closest: Vec::new(), skin })
+        Ok(DistanceField { low: low - room, cell, size, values: Vec::new(), closest: Vec::new(), skin })
     }
 
     /// How many nodes it has.

@@ -4,7 +4,7 @@
 //! number of triangles; what is paid is memory and the fineness of the skin, both by `cell`.
 //!
 //! - [`SdfCollider`]: the stage.
-//! - [`Field`]: the grid, its making and its questions.
+//! - [`DistanceField`]: the grid, its making and its questions.
 //! - [`SdfScheme`]: the service that solvers call.
 //! - `skin`: the body's triangles with the normals that give a distance its sign.
 //! - `cloth`: cloth against itself, by a uniform grid and exact tests.
@@ -16,7 +16,7 @@ mod field;
 mod scheme;
 mod skin;
 
-pub use field::Field;
+pub use field::DistanceField;
 pub use scheme::SdfScheme;
 
 use std::sync::Arc;
@@ -66,7 +66,7 @@ impl SdfCollider {
         if body.is_none() && !self.self_collision {
             cx.warn("there is no body and self-collision is off: nothing is kept apart");
         }
-        let field = body.map(|b| Field::of(b, self.cell.metres(), cx)).transpose()?;
+        let field = body.map(|b| DistanceField::of(b, self.cell.metres(), cx)).transpose()?;
         if let Some(field) = &field {
             cx.figure("grid_nodes", field.nodes() as f64, "");
         }

@@ -4,8 +4,8 @@
 //! in steps of the distance itself, at least [`STEP`] of a cell (sphere tracing, Hart 1996), and
 //! the place is found by halving.
 
-use crate::cloth::Cloth;
-use crate::field::Field;
+use crate::cloth::ClothCells;
+use crate::field::DistanceField;
 use rayon::prelude::*;
 use toile_core::artifact::{BodyContact, Collide, ColliderCard, Point3, SelfContact};
 
@@ -24,23 +24,23 @@ const CHUNK: usize = 256;
 #[derive(Debug)]
 pub struct SdfScheme {
     card: ColliderCard,
-    field: Option<Field>,
+    field: Option<DistanceField>,
 }
 
 impl SdfScheme {
     /// The scheme for a body's field, or for cloth alone.
-    pub fn new(card: ColliderCard, field: Option<Field>) -> Self {
+    pub fn new(card: ColliderCard, field: Option<DistanceField>) -> Self {
         SdfScheme { card, field }
     }
 
     /// The body's field.
-    pub fn field(&self) -> Option<&Field> {
+    pub fn field(&self) -> Option<&DistanceField> {
         self.field.as_ref()
     }
 }
 
 /// The share of the path at which it first enters the body.
-fn entry(field: &Field, from: &Point3, to: &Point3) -> Option<f64> {
+fn entry(field: &DistanceField, from: &Point3, to: &Point3) -> Option<f64> {
     let way = to - from;
     let length = way.norm();
     // A path that is no finite number is none.
@@ -108,14 +108,14 @@ impl Collide for SdfScheme {
         reach: f64,
         out: &mut Vec<SelfContact>,
     ) {
-        Cloth::new(positions, triangles, reach).contacts(out);
+        ClothCells::new(positions, triangles, reach).contacts(out);
     }
 
     fn conservative_bounds(&self, positions: &[Point3], triangles: &[[u32; 3]], reach: f64) -> Vec<f64> {
-        Cloth::new(positions, triangles, reach).bounds()
+        ClothCells::new(positions, triangles, reach).bounds()
     }
 
     fn self_crossings(&self, positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-        Cloth::new(positions, triangles, 0.0).crossings()
+        ClothCells::new(positions, triangles, 0.0).crossings()
     }
 }

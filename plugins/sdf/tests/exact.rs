@@ -9,7 +9,7 @@ use std::time::Instant;
 use toile_core::artifact::{Body, Collide, Collider, Point3, SelfContact, Vector3};
 use toile_core::testkit::dress;
 use toile_core::{Context, Inputs, PortValue, Stage};
-use toile_sdf::{Field, SdfCollider};
+use toile_sdf::{DistanceField, SdfCollider};
 
 /// The only output of a stage.
 fn made<T: Clone + 'static>(stage: &dyn Stage, inputs: Vec<Option<PortValue>>) -> T {
@@ -63,7 +63,7 @@ fn exact(body: &Body) -> impl Fn(&Point3) -> f64 {
 /// Errors of the field at random places around the body, in bands of distance: (band, median, 99 %,
 /// greatest), metres.
 fn errors(body: &Body, cell: f64, bands: &[f64]) -> Vec<(f64, f64, f64, f64)> {
-    let (field, truth) = (Field::of(body, cell, &Context::quiet()).unwrap(), exact(body));
+    let (field, truth) = (DistanceField::of(body, cell, &Context::quiet()).unwrap(), exact(body));
     let mut next = numbers(3);
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); bands.len()];
     for _ in 0..20_000 {
@@ -83,7 +83,7 @@ fn errors(body: &Body, cell: f64, bands: &[f64]) -> Vec<(f64, f64, f64, f64)> {
 fn near_the_skin_the_field_is_exact() {
     let body = mannequin();
     let start = Instant::now();
-    let field = Field::of(&body, 0.008, &Context::quiet()).unwrap();
+    let field = DistanceField::of(&body, 0.008, &Context::quiet()).unwrap();
     println!(
         "{} triangles, {} nodes, made in {:.2} s",
         body.triangles.len(),
@@ -177,10 +177,13 @@ fn a_grid_too_fine_is_refused() {
 fn an_open_body_is_refused() {
     let mut body = dress::body();
     body.triangles.pop();
-    let error = Field::of(&body, 0.01, &Context::quiet()).unwrap_err();
+    let error = DistanceField::of(&body, 0.01, &Context::quiet()).unwrap_err();
     assert_eq!(error.message, "the body is not closed: 3 edges lack a second triangle that fits");
     body.triangles.clear();
-    assert_eq!(Field::of(&body, 0.01, &Context::quiet()).unwrap_err().message, "the body has no triangles");
+    assert_eq!(
+        DistanceField::of(&body, 0.01, &Context::quiet()).unwrap_err().message,
+        "the body has no triangles"
+    );
 }
 
 /// Triangles of a size in a unit cube; every third shares a vertex with the one before.

@@ -5,8 +5,8 @@
 //! hundred slices.
 
 use crate::measures::estimate::estimate;
-use crate::skin::topology::TriMesh;
-use crate::skin::topology::{Pieces, Topology};
+use crate::skin::topology::SkinMesh;
+use crate::skin::topology::{MeshTopology, VertexSets};
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 use toile_geometry::obj;
@@ -134,12 +134,12 @@ impl BodyObj {
     }
 
     /// A body from the file's vertices and triangles.
-    fn body(&self, (points, triangles): TriMesh, cx: &Context) -> Result<Body, StageError> {
+    fn body(&self, (points, triangles): SkinMesh, cx: &Context) -> Result<Body, StageError> {
         let (pieces, points, triangles) = largest_piece(&points, &triangles);
         if pieces > 1 {
             cx.warn(format!("the body's file holds {pieces} pieces; the largest is taken"));
         }
-        closed(&Topology::of(points.len(), &triangles), &points)?;
+        closed(&MeshTopology::of(points.len(), &triangles), &points)?;
         let mut points: Vec<Point3> = points.iter().map(|p| self.upright(p)).collect();
         let height = self.stand(&mut points)?;
         let triangles = turned_outwards(&points, triangles);
@@ -198,7 +198,7 @@ pub fn body_of_mesh(
     points: Vec<Point3>,
     triangles: Vec<[u32; 3]>,
 ) -> Result<(Body, Option<&'static str>), StageError> {
-    closed(&Topology::of(points.len(), &triangles), &points)?;
+    closed(&MeshTopology::of(points.len(), &triangles), &points)?;
     let triangles = turned_outwards(&points, triangles);
     let (mut lo, mut hi) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
     points.iter().for_each(|p| (lo, hi) = (lo.inf(p), hi.sup(p)));
@@ -212,7 +212,7 @@ pub fn body_of_mesh(
 }
 
 /// Refuses a mesh with holes or turned triangles.
-fn closed(t: &Topology, points: &[Point3]) -> Result<(), StageError> {
+fn closed(t: &MeshTopology, points: &[Point3]) -> Result<(), StageError> {
     let place = |edge: Option<[u32; 2]>| {
         let end = |v: u32| {
             let p = points[v as usize];
@@ -240,7 +240,7 @@ fn closed(t: &Topology, points: &[Point3]) -> Result<(), StageError> {
 
 /// The piece with the most triangles, without unused vertices, and the number of pieces.
 fn largest_piece(points: &[Point3], triangles: &[[u32; 3]]) -> (usize, Vec<Point3>, Vec<[u32; 3]>) {
-    let mut pieces = Pieces::new(points.len());
+    let mut pieces = VertexSets::new(points.len());
     for t in triangles {
         pieces.join(t[0], t[1]);
         pieces.join(t[0], t[2]);

@@ -3,21 +3,21 @@
 //!
 //! Parts are [lofts](crate::limbs::loft), [limbs](crate::limbs::limb) and ellipsoids,
 //! joined by smooth minima; the [relief](crate::limbs::relief) of bones and muscles moves the
-//! skin. Sections and levels follow a [`Form`]. Levels are shares of the height up to the chin, so
-//! that a child, whose head is larger, still has its waist where the trunk has one. Girths and
+//! skin. Sections and levels follow a [`BodyForm`]. Levels are shares of the height up to the chin,
+//! so that a child, whose head is larger, still has its waist where the trunk has one. Girths and
 //! lengths are met by [`Aims`].
 //!
 //! Limit: a shop's dummy, not a portrait: a calm head without eyes and ears, fingers side by side.
 
-use crate::form::Form;
+use crate::form::BodyForm;
 use crate::limbs::arm::{self, Arm};
 use crate::limbs::bump::Bump;
 use crate::limbs::head::Head;
 use crate::limbs::leg::Leg;
 use crate::limbs::relief::relief;
 use crate::limbs::torso::{Torso, neck_middle};
-use crate::shape::{Aims, Shape, Size};
-use crate::skin::field::{Field, smooth_min};
+use crate::shape::{Aims, FigureShape, FigureSize};
+use crate::skin::field::{ScalarField, smooth_min};
 use toile_core::artifact::{Point3, Vector3};
 
 /// Widths over which parts are joined, metres on the adult.
@@ -45,9 +45,9 @@ const FINER: [f64; 4] = [0.44, 0.70, 0.68, 0.95];
 
 /// A figure of given size.
 #[derive(Debug, Clone)]
-pub(crate) struct Figure {
+pub(crate) struct BodyFigure {
     /// Size, form and aims.
-    pub shape: Shape,
+    pub shape: FigureShape,
     /// Shoulder joint, elbow and wrist of the left arm (the axis, not the skin).
     pub arm_axis: [Point3; 3],
     torso: Torso,
@@ -57,11 +57,11 @@ pub(crate) struct Figure {
     relief: Vec<Bump>,
 }
 
-impl Figure {
+impl BodyFigure {
     /// The figure of that size and form.
-    pub(crate) fn new(size: &Size, form: &Form, aims: &Aims) -> Self {
-        let shape = Shape::new(size, form, aims);
-        Figure {
+    pub(crate) fn new(size: &FigureSize, form: &BodyForm, aims: &Aims) -> Self {
+        let shape = FigureShape::new(size, form, aims);
+        BodyFigure {
             arm_axis: arm::axis(&shape),
             torso: Torso::new(&shape),
             head: Head::new(&shape),
@@ -73,7 +73,7 @@ impl Figure {
     }
 
     /// The size that it was made to.
-    pub(crate) fn size(&self) -> &Size {
+    pub(crate) fn size(&self) -> &FigureSize {
         &self.shape.size
     }
 
@@ -157,7 +157,7 @@ impl Figure {
     }
 }
 
-impl Field for Figure {
+impl ScalarField for BodyFigure {
     fn value(&self, p: Point3) -> f64 {
         self.whole(p, 0.0)
     }

@@ -7,7 +7,7 @@
 
 /// A row of the trunk: level, half width, depth in front and behind the axis, metres on the adult
 /// of [`crate::shape::ADULT`].
-pub(crate) type Row = [f64; 4];
+pub(crate) type TrunkRow = [f64; 4];
 
 /// Sections of the trunk.
 pub(crate) const ROWS: usize = 14;
@@ -17,9 +17,9 @@ pub(crate) const HIP_ROW: usize = 3;
 
 /// Forms that can be mixed: a girl of 145 cm is half a child's and half a woman's.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Form {
+pub(crate) struct BodyForm {
     /// Sections of the trunk, from the fork of the legs to the neck.
-    pub trunk: [Row; ROWS],
+    pub trunk: [TrunkRow; ROWS],
     /// Size of the breasts where bust and waist differ as a woman's do.
     pub breast: f64,
     /// Height of the chest's muscles, metres.
@@ -44,7 +44,7 @@ pub(crate) struct Form {
     pub neck: [f64; 2],
 }
 
-pub(crate) const WOMAN: Form = Form {
+pub(crate) const WOMAN: BodyForm = BodyForm {
     trunk: [
         [0.490, 0.148, 0.066, 0.078],
         [0.537, 0.170, 0.084, 0.098],
@@ -74,7 +74,7 @@ pub(crate) const WOMAN: Form = Form {
     neck: [0.085, 0.225],
 };
 
-pub(crate) const MAN: Form = Form {
+pub(crate) const MAN: BodyForm = BodyForm {
     trunk: [
         [0.490, 0.140, 0.068, 0.076],
         [0.537, 0.160, 0.088, 0.094],
@@ -104,7 +104,7 @@ pub(crate) const MAN: Form = Form {
     neck: [0.085, 0.225],
 };
 
-pub(crate) const CHILD: Form = Form {
+pub(crate) const CHILD: BodyForm = BodyForm {
     trunk: [
         [0.490, 0.142, 0.078, 0.080],
         [0.537, 0.158, 0.098, 0.104],
@@ -134,12 +134,12 @@ pub(crate) const CHILD: Form = Form {
     neck: [0.085, 0.225],
 };
 
-impl Form {
+impl BodyForm {
     /// The mixture with another: a share of 0 is this form, 1 the other.
-    pub(crate) fn towards(&self, other: &Form, share: f64) -> Form {
+    pub(crate) fn towards(&self, other: &BodyForm, share: f64) -> BodyForm {
         let mix = |a: f64, b: f64| a + (b - a) * share;
         let both = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
-        Form {
+        BodyForm {
             trunk: std::array::from_fn(|r| std::array::from_fn(|c| mix(self.trunk[r][c], other.trunk[r][c]))),
             breast: mix(self.breast, other.breast),
             chest: mix(self.chest, other.chest),

@@ -1,14 +1,14 @@
 //! `Mannequin`: a closed, smooth figure made to measure.
 //!
-//! A [`Figure`](super::figure::Figure) is brought to its measures by
+//! A [`BodyFigure`](super::figure::BodyFigure) is brought to its measures by
 //! [`fit`](crate::measures::fit). What is not given follows from the size, the figure, the
 //! height and the bust. Cost: mostly one meshing, a tenth of a second.
 
 use super::wearer::Wearer;
-use crate::form::{CHILD, Form, MAN, WOMAN};
+use crate::form::{BodyForm, CHILD, MAN, WOMAN};
 use crate::measures::fit::fit;
-use crate::measures::sizes::{Table, known, measures, of_child};
-use crate::shape::{Size, chin, level};
+use crate::measures::sizes::{SizeRow, known, measures, of_child};
+use crate::shape::{FigureSize, chin, level};
 use toile_core::prelude::*;
 
 /// Heights between which a figure that is not stated is half a child's, metres.
@@ -21,7 +21,8 @@ const ARM: [f64; 2] = [0.366, 0.384];
 /// Height, bust, waist and hip of women, men and children where nothing is given, centimetres.
 /// Girths of a child follow from its height where that is given; those of the grown do not depend
 /// on it.
-const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
+const USUAL: [SizeRow; 3] =
+    [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
 
 /// A mannequin made to measure: closed and smooth, arms spread in A-pose, legs a little apart.
 ///
@@ -111,7 +112,7 @@ impl Mannequin {
     }
 
     /// The measures that are given, those of the size, and those that follow.
-    fn measures(&self) -> Result<(Size, Form), StageError> {
+    fn measures(&self) -> Result<(FigureSize, BodyForm), StageError> {
         let (wearer, usual) = self.usual()?;
         let given = |l: Option<Length>, or: f64| l.map_or(or, Length::metres);
         let [height, bust, waist, hip] = [self.height, self.bust, self.waist, self.hip];
@@ -119,7 +120,7 @@ impl Mannequin {
         let bust = given(bust, usual[1] / 100.0);
         let (form, grown) = form(wearer, height);
         let follows = |[of_height, of_bust]: [f64; 2]| of_height * height + of_bust * bust;
-        let size = Size {
+        let size = FigureSize {
             height,
             bust,
             waist: given(waist, usual[2] / 100.0),
@@ -135,7 +136,7 @@ impl Mannequin {
 
     /// Whose figure it is, where that is known, and the measures of the size or those that are
     /// usual.
-    fn usual(&self) -> Result<(Option<Wearer>, Table), StageError> {
+    fn usual(&self) -> Result<(Option<Wearer>, SizeRow), StageError> {
         let Some(size) = &self.size else {
             let usual = USUAL[self.figure.map_or(0, |w| w as usize)];
             let table = self.height.map_or(usual, |h| at_height(self.figure, h.metres(), usual));
@@ -154,7 +155,7 @@ fn grown(height: f64) -> f64 {
 }
 
 /// What is usual at a height, metres: a child's girths follow from it.
-fn at_height(wearer: Option<Wearer>, height: f64, usual: Table) -> Table {
+fn at_height(wearer: Option<Wearer>, height: f64, usual: SizeRow) -> SizeRow {
     let child = of_child(height * 100.0);
     let share = match wearer {
         Some(Wearer::Woman | Wearer::Man) => 1.0,
@@ -165,7 +166,7 @@ fn at_height(wearer: Option<Wearer>, height: f64, usual: Table) -> Table {
 }
 
 /// The proportions, and the share in which they are a grown person's.
-fn form(wearer: Option<Wearer>, height: f64) -> (Form, f64) {
+fn form(wearer: Option<Wearer>, height: f64) -> (BodyForm, f64) {
     let share = grown(height);
     match wearer {
         Some(Wearer::Woman) => (WOMAN, 1.0),
@@ -189,7 +190,7 @@ fn no_size(size: &str, wearer: Option<Wearer>) -> StageError {
 
 /// Shares of a length that people have, from thin to heavy: parameter, what it is compared to,
 /// range.
-fn check(size: &Size) -> Result<(), StageError> {
+fn check(size: &FigureSize) -> Result<(), StageError> {
     let h = size.height;
     let rules = [
         ("height", h, "", 1.0, (0.8, 2.1)),

@@ -1,11 +1,11 @@
 //! What the parts of a figure are made from: its size, its aims, its levels.
 
-use crate::form::{Form, HIP_ROW, WOMAN};
+use crate::form::{BodyForm, HIP_ROW, WOMAN};
 use toile_core::artifact::Point3;
 
 /// What a figure is made to, metres and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Size {
+pub(crate) struct FigureSize {
     /// Crown to sole.
     pub height: f64,
     /// Girth at the bust.
@@ -27,7 +27,7 @@ pub(crate) struct Size {
 }
 
 /// The adult whose sections stand in [`crate::form`].
-pub(crate) const ADULT: Size = Size {
+pub(crate) const ADULT: FigureSize = FigureSize {
     height: 1.72,
     bust: 0.88,
     waist: 0.70,
@@ -85,7 +85,7 @@ pub(crate) struct Aims {
 
 impl Aims {
     /// Where the search begins.
-    pub(crate) fn first(size: &Size) -> Self {
+    pub(crate) fn first(size: &FigureSize) -> Self {
         Aims {
             trunk: [size.hip / ADULT.hip, size.waist / ADULT.waist, size.bust / ADULT.bust],
             neck: size.neck / std::f64::consts::TAU,
@@ -97,11 +97,11 @@ impl Aims {
 
 /// Makes the parts of a figure.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Shape {
+pub(crate) struct FigureShape {
     /// The measures.
-    pub size: Size,
+    pub size: FigureSize,
     /// Woman, man or child.
-    pub form: Form,
+    pub form: BodyForm,
     /// What is aimed at.
     pub aims: Aims,
     /// The height up to the chin, metres.
@@ -112,11 +112,11 @@ pub(crate) struct Shape {
     pub head: f64,
 }
 
-impl Shape {
-    pub(crate) fn new(size: &Size, form: &Form, aims: &Aims) -> Self {
+impl FigureShape {
+    pub(crate) fn new(size: &FigureSize, form: &BodyForm, aims: &Aims) -> Self {
         let chin = chin(size.height);
         let head = head_height(size.height) / 0.225;
-        Shape { size: *size, form: *form, aims: *aims, chin, stature: chin / ADULT_CHIN, head }
+        FigureShape { size: *size, form: *form, aims: *aims, chin, stature: chin / ADULT_CHIN, head }
     }
 
     /// The height of a level: shares of the height up to the chin, shifted so that the fork of the

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr)]
 
 use super::*;
-use crate::skin::topology::Topology;
+use crate::skin::topology::MeshTopology;
 use proptest::prelude::*;
 use toile_core::prelude::*;
 
@@ -14,7 +14,7 @@ pub(crate) fn mannequin(ron: &str) -> Result<Body, StageError> {
 #[test]
 fn the_default_is_one_closed_piece() {
     let body = mannequin("()").unwrap();
-    let topology = Topology::of(body.positions.len(), &body.triangles);
+    let topology = MeshTopology::of(body.positions.len(), &body.triangles);
     assert!(topology.is_closed(), "{topology:?}");
     assert_eq!((topology.components, topology.euler()), (1, 2));
     let litres = body.volume() * 1e3;
@@ -231,7 +231,7 @@ fn forty_figures_have_their_measures_and_do_not_cross_themselves() {
             let found = body.measurements[name];
             assert!((found - wanted).abs() < 5e-3, "{k} {figure:?} {name}: {found} for {wanted}");
         }
-        let topology = Topology::of(body.positions.len(), &body.triangles);
+        let topology = MeshTopology::of(body.positions.len(), &body.triangles);
         assert!(topology.is_closed() && topology.components == 1 && topology.euler() == 2, "{k}");
         assert!(body.triangles.len() < 28_000, "{k}: {}", body.triangles.len());
         assert_eq!(crate::skin::untangle::crossing(&body.positions, &body.triangles).len(), 0, "{k}");

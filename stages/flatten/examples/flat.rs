@@ -21,9 +21,9 @@ use toile_flatten::flatteners::{
     ArapOptions, Flattening, Placement, Tension, arap, lscm, springs, symmetric_dirichlet, woven,
 };
 use toile_flatten::grain::Grain;
-use toile_flatten::islands::{Piece, Pieces, islands_by_uv, split_components, weld_uv};
-use toile_flatten::newton::NewtonOptions;
-use toile_flatten::surface::Surface;
+use toile_flatten::islands::{SurfacePiece, SurfacePieces, islands_by_uv, split_components, weld_uv};
+use toile_flatten::newton::StoppingLimits;
+use toile_flatten::surface::PieceSurface;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -67,7 +67,7 @@ fn read(path: &str) -> Result<Obj, Failure> {
     Ok(obj)
 }
 
-fn pieces(obj: &Obj) -> Result<Pieces, Failure> {
+fn pieces(obj: &Obj) -> Result<SurfacePieces, Failure> {
     if obj.uv.is_empty() {
         return Ok(split_components(&obj.places, &obj.triangles)?);
     }
@@ -76,8 +76,8 @@ fn pieces(obj: &Obj) -> Result<Pieces, Failure> {
     Ok(islands_by_uv(&obj.places, &obj.triangles, &uv)?)
 }
 
-fn flatten(method: &str, surface: &Surface, placement: &Placement) -> Result<Flattening, FlattenError> {
-    let newton = NewtonOptions::default();
+fn flatten(method: &str, surface: &PieceSurface, placement: &Placement) -> Result<Flattening, FlattenError> {
+    let newton = StoppingLimits::default();
     match method {
         "lscm" => lscm(surface, placement),
         "sd" => symmetric_dirichlet(surface, newton, placement),
@@ -97,7 +97,7 @@ fn objective(method: &str) -> Objective {
 }
 
 /// Proposes darts for every piece; prints each.
-fn print_darts(method: &str, garment: &Pieces, placement: &Placement) -> Result<(), Failure> {
+fn print_darts(method: &str, garment: &SurfacePieces, placement: &Placement) -> Result<(), Failure> {
     for (i, piece) in garment.pieces.iter().enumerate() {
         let begin = Instant::now();
         let darts = propose_darts(&piece.surface, &objective(method), placement, DartOptions::default())?;
@@ -118,7 +118,7 @@ fn print_darts(method: &str, garment: &Pieces, placement: &Placement) -> Result<
 /// changed.
 fn take_care(
     method: &str,
-    garment: &Pieces,
+    garment: &SurfacePieces,
     flats: &mut [Flattening],
     placement: &Placement,
 ) -> Result<(), Failure> {
@@ -154,7 +154,7 @@ fn take_care(
 }
 
 /// Area and outline of a true flat piece, from the corners of its triangles.
-fn truth(piece: &Piece, truth: &Obj) -> (f64, f64) {
+fn truth(piece: &SurfacePiece, truth: &Obj) -> (f64, f64) {
     let corner =
         |t: usize, k: usize| truth.places[truth.triangles[piece.triangles[t] as usize][k % 3] as usize];
     let (mut area, mut outline) = (0.0, 0.0);
@@ -169,7 +169,7 @@ fn truth(piece: &Piece, truth: &Obj) -> (f64, f64) {
     (area, outline)
 }
 
-fn svg(pieces: &[(Piece, Flattening)]) -> String {
+fn svg(pieces: &[(SurfacePiece, Flattening)]) -> String {
     let (mut body, mut x, mut height) = (String::new(), 0.0, 0.0f64);
     for (piece, flat) in pieces {
         let low = flat.points.iter().fold(Point2::new(f64::MAX, f64::MAX), |m, p| m.inf(p));
@@ -196,7 +196,7 @@ fn svg(pieces: &[(Piece, Flattening)]) -> String {
     )
 }
 
-fn obj_text(obj: &Obj, pieces: &[(Piece, Flattening)]) -> String {
+fn obj_text(obj: &Obj, pieces: &[(SurfacePiece, Flattening)]) -> String {
     let mut text = String::new();
     let mut corners = vec![[0; 3]; obj.triangles.len()];
     let mut first = 1;

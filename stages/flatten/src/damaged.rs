@@ -5,9 +5,9 @@ use crate::distortion::distortion;
 use crate::energy::WovenStiffness;
 use crate::flatteners::Placement;
 use crate::islands::{islands_by_group, islands_by_seams, islands_by_uv, split_components};
-use crate::newton::NewtonOptions;
-use crate::shapes::{Mesh, bump, cone, cylinder};
-use crate::surface::Surface;
+use crate::newton::StoppingLimits;
+use crate::shapes::{PlainMesh, bump, cone, cylinder};
+use crate::surface::PieceSurface;
 use nalgebra::{Point3, Vector3};
 
 /// A sequence of numbers that looks random and is the same in every run (xorshift, Marsaglia 2003).
@@ -26,7 +26,7 @@ impl Dice {
     }
 }
 
-fn damaged(dice: &mut Dice) -> Mesh {
+fn damaged(dice: &mut Dice) -> PlainMesh {
     let (mut places, mut triangles) = match dice.roll(3) {
         0 => bump(2 + dice.roll(6), 2 + dice.roll(6), 4.0 * dice.share()),
         1 => cylinder(2 + dice.roll(6), 1 + dice.roll(6)),
@@ -59,7 +59,7 @@ fn damage(dice: &mut Dice, places: &mut [Point3<f64>], triangles: &mut Vec<[u32;
 }
 
 /// Everything that the crate offers, on one mesh.
-fn try_all(dice: &mut Dice, (places, triangles): Mesh) {
+fn try_all(dice: &mut Dice, (places, triangles): PlainMesh) {
     let objectives = [
         Objective::Arap,
         Objective::SymmetricDirichlet,
@@ -68,13 +68,13 @@ fn try_all(dice: &mut Dice, (places, triangles): Mesh) {
     ];
     let objective = objectives[dice.roll(4)];
     let (placement, newton) =
-        (Placement::default(), NewtonOptions { iterations: 30, ..NewtonOptions::default() });
+        (Placement::default(), StoppingLimits { iterations: 30, ..StoppingLimits::default() });
     let groups: Vec<u32> = triangles.iter().map(|_| dice.roll(2) as u32).collect();
     let uv: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| v / 3)).collect();
     let seams = [[dice.roll(9) as u32, dice.roll(9) as u32], [0, 1]];
     let _ = islands_by_uv(&places, &triangles, &uv);
     let _ = islands_by_seams(&places, &triangles, &seams);
-    if let Ok(s) = Surface::new(places.clone(), triangles.clone())
+    if let Ok(s) = PieceSurface::new(places.clone(), triangles.clone())
         && let Ok(flat) = objective.flatten(&s, newton, &placement)
     {
         assert!(flat.flipped(&s).is_empty());

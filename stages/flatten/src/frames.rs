@@ -5,7 +5,7 @@
 //! `J = sum_i q_i g_i^T` (2 x 2): its singular values are the stretches from 3D to 2D. Lengths are
 //! counted in the root of the surface's area, so that energies have no unit.
 
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::{Matrix2, Point2, Vector2, Vector3};
 
 /// Triangles in their planes.
@@ -22,7 +22,7 @@ pub(crate) struct Frames {
 impl Frames {
     /// Lays out every triangle.
     #[must_use]
-    pub(crate) fn new(surface: &Surface) -> Self {
+    pub(crate) fn new(surface: &PieceSurface) -> Self {
         let unit = surface.area().sqrt();
         let count = surface.triangles().len();
         let (mut gradients, mut shares) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -87,7 +87,7 @@ impl Frames {
 /// Two edges from corner 0 of a triangle, in its plane: the first along x, the second above it; as
 /// it was cut where that is known.
 #[must_use]
-pub(crate) fn local_edges(surface: &Surface, triangle: usize) -> [Vector2<f64>; 2] {
+pub(crate) fn local_edges(surface: &PieceSurface, triangle: usize) -> [Vector2<f64>; 2] {
     if let Some(edges) = surface.cut_shape(triangle) {
         return edges;
     }
@@ -98,7 +98,7 @@ pub(crate) fn local_edges(surface: &Surface, triangle: usize) -> [Vector2<f64>; 
 
 /// The axes of a triangle's plane in space: along its first edge, and to the left of it.
 #[must_use]
-pub(crate) fn local_axes(surface: &Surface, triangle: usize) -> [Vector3<f64>; 2] {
+pub(crate) fn local_axes(surface: &PieceSurface, triangle: usize) -> [Vector3<f64>; 2] {
     let [a, b, _] = surface.triangles()[triangle].map(|v| surface.positions()[v as usize]);
     let x = (b - a).normalize();
     [x, surface.area_vector(triangle).normalize().cross(&x)]

@@ -6,7 +6,7 @@
 
 use crate::error::FlattenError;
 use crate::frames::{Frames, local_axes};
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::{Point2, Rotation2, Vector2, Vector3};
 
 /// What becomes upright in the plane.
@@ -49,7 +49,7 @@ impl Grain {
         })
     }
 
-    pub(crate) fn check(&self, surface: &Surface) -> Result<(), FlattenError> {
+    pub(crate) fn check(&self, surface: &PieceSurface) -> Result<(), FlattenError> {
         let range = "a finite direction other than zero";
         match self {
             Self::Direction(d) | Self::At { direction: d, .. }
@@ -78,7 +78,7 @@ impl Grain {
 
     /// The weighted sum of flat places (in units of [`Frames::unit`]) that becomes upright; the
     /// length of a direction is made 1.
-    pub(crate) fn weights(&self, surface: &Surface, frames: &Frames) -> Vec<(u32, f64)> {
+    pub(crate) fn weights(&self, surface: &PieceSurface, frames: &Frames) -> Vec<(u32, f64)> {
         match self {
             Self::Direction(d) => {
                 let mut sums = vec![0.0; surface.positions().len()];
@@ -99,7 +99,7 @@ impl Grain {
 }
 
 /// How much each corner's place adds to the image of a direction.
-fn corner_weights(surface: &Surface, frames: &Frames, t: usize, d: &Vector3<f64>) -> [f64; 3] {
+fn corner_weights(surface: &PieceSurface, frames: &Frames, t: usize, d: &Vector3<f64>) -> [f64; 3] {
     let [x, y] = local_axes(surface, t);
     let d = Vector2::new(d.dot(&x), d.dot(&y));
     frames.gradients(t).map(|g| g.dot(&d))

@@ -6,18 +6,19 @@
 //!                              +------- distortion -----+
 //! ```
 //!
-//! A [`surface::Surface`] is a checked mesh. A flattener gives it flat places; all of them go
+//! A [`surface::PieceSurface`] is a checked mesh. A flattener gives it flat places; all of them go
 //! without flipped triangles, and the same input gives the same bits for any number of threads.
 //!
 //! ```
 //! use nalgebra::Point3;
 //! use toile_flatten::distortion::distortion;
 //! use toile_flatten::flatteners::{ArapOptions, Placement, arap};
-//! use toile_flatten::surface::Surface;
+//! use toile_flatten::surface::PieceSurface;
 //!
 //! // A sheet folded along its diagonal: two triangles, seen from outside counter-clockwise.
 //! let corners = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 4.0, 1.0], [0.0, 4.0, 0.0]];
-//! let surface = Surface::new(corners.map(Point3::from).to_vec(), vec![[0, 1, 3], [1, 2, 3]])?;
+//! let corners = corners.map(Point3::from).to_vec();
+//! let surface = PieceSurface::new(corners, vec![[0, 1, 3], [1, 2, 3]])?;
 //! let flat = arap(&surface, ArapOptions::default(), &Placement::default())?;
 //! let table = distortion(&surface, &flat.points)?;
 //! assert!(table.area_error.abs() < 1e-6 && table.flipped == 0);

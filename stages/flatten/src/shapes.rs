@@ -1,14 +1,14 @@
 //! Surfaces with known answers, for tests.
 
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::{Point2, Point3};
 
 /// A mesh: places and triangles.
-pub(crate) type Mesh = (Vec<Point3<f64>>, Vec<[u32; 3]>);
+pub(crate) type PlainMesh = (Vec<Point3<f64>>, Vec<[u32; 3]>);
 
 /// A grid of `m` x `n` squares of the unit square, each of two triangles that run counter-clockwise
 /// in (u, v), put into space.
-pub(crate) fn grid(m: usize, n: usize, place: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
+pub(crate) fn grid(m: usize, n: usize, place: impl Fn(f64, f64) -> [f64; 3]) -> PlainMesh {
     let at = |i: usize, j: usize| (j * (m + 1) + i) as u32;
     let places = (0..=n).flat_map(|j| (0..=m).map(move |i| (i as f64 / m as f64, j as f64 / n as f64)));
     let mut triangles = Vec::new();
@@ -24,12 +24,12 @@ pub(crate) fn grid(m: usize, n: usize, place: impl Fn(f64, f64) -> [f64; 3]) -> 
 }
 
 /// The checked surface of a mesh that is known to be sound.
-pub(crate) fn surface((places, triangles): Mesh) -> Surface {
-    Surface::new(places, triangles).unwrap_or_else(|e| unreachable!("{e}"))
+pub(crate) fn surface((places, triangles): PlainMesh) -> PieceSurface {
+    PieceSurface::new(places, triangles).unwrap_or_else(|e| unreachable!("{e}"))
 }
 
 /// A third of a cylinder of radius 1.5 about y, 2 high; seen from outside it is `pi` wide.
-pub(crate) fn cylinder(m: usize, n: usize) -> Mesh {
+pub(crate) fn cylinder(m: usize, n: usize) -> PlainMesh {
     grid(m, n, |u, v| {
         let angle = std::f64::consts::TAU / 3.0 * (0.5 - u);
         [-1.5 * angle.sin(), 2.0 * v, 1.5 * angle.cos()]
@@ -37,7 +37,7 @@ pub(crate) fn cylinder(m: usize, n: usize) -> Mesh {
 }
 
 /// A bump over the square of side 2, symmetric about x = 0, as high as `height`.
-pub(crate) fn bump(m: usize, n: usize, height: f64) -> Mesh {
+pub(crate) fn bump(m: usize, n: usize, height: f64) -> PlainMesh {
     grid(m, n, move |u, v| {
         let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
         [x, y, height * (-3.0 * (x * x + y * y)).exp()]
@@ -45,7 +45,7 @@ pub(crate) fn bump(m: usize, n: usize, height: f64) -> Mesh {
 }
 
 /// A closed cone of the given missing angle (radians) about y, slant from 0 to 1, its tip vertex 0.
-pub(crate) fn cone(rings: usize, sectors: usize, missing: f64) -> Mesh {
+pub(crate) fn cone(rings: usize, sectors: usize, missing: f64) -> PlainMesh {
     let sine = 1.0 - missing / std::f64::consts::TAU;
     let mut places = vec![Point3::origin()];
     let mut triangles = Vec::new();

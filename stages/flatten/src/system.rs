@@ -2,20 +2,20 @@
 //! of elimination.
 
 use crate::linear::{Graph, elimination_order};
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 
 /// Made once a piece, used by all its solvers.
 #[derive(Debug, Clone)]
-pub(crate) struct System {
+pub(crate) struct PieceSystem {
     triangles: Vec<[u32; 3]>,
     graph: Graph,
     order: Vec<u32>,
 }
 
-impl System {
+impl PieceSystem {
     /// The system of a surface; `extra` couples further pairs of its vertices.
     #[must_use]
-    pub(crate) fn new(surface: &Surface, extra: &[[u32; 2]]) -> Self {
+    pub(crate) fn new(surface: &PieceSurface, extra: &[[u32; 2]]) -> Self {
         let graph = Graph::new(surface.positions().len(), surface.triangles(), extra);
         let order = elimination_order(&graph, surface.positions());
         Self { triangles: surface.triangles().to_vec(), graph, order }

@@ -15,7 +15,7 @@ use crate::Vec3;
 use crate::ccd::approach;
 use crate::crossing::{self, pierces_clearly};
 use crate::pair::{Kind, Pair};
-use crate::tree::{Meeting, Tree};
+use crate::tree::{Meeting, VolumeTree};
 use crate::volume::{Aabb, BoundingVolume};
 use rayon::prelude::*;
 
@@ -25,7 +25,7 @@ const LEAF_TRIANGLES: usize = 4;
 /// The tree over one sheet.
 #[derive(Debug, Clone)]
 pub struct ClothTree<V = Aabb> {
-    tree: Tree,
+    tree: VolumeTree,
     /// In the order of the tree.
     triangles: Vec<[u32; 3]>,
     /// The number of each as it was given.
@@ -65,7 +65,7 @@ impl<V: BoundingVolume> ClothTree<V> {
     #[must_use]
     pub fn of(all: &[[u32; 3]], layout: &[Vec3]) -> Self {
         let corners: Vec<[Vec3; 3]> = all.iter().map(|t| t.map(|v| layout[v as usize])).collect();
-        let (tree, order) = Tree::over(&corners, LEAF_TRIANGLES);
+        let (tree, order) = VolumeTree::over(&corners, LEAF_TRIANGLES);
         let triangles: Vec<[u32; 3]> = order.iter().map(|&t| all[t as usize]).collect();
         let owns = owners(&triangles, layout.len());
         let point = (0..layout.len() as u32).collect();
@@ -93,7 +93,7 @@ impl<V: BoundingVolume> ClothTree<V> {
     /// The same, where only what is active looks for others.
     fn pairs_looked_for(&self, active: Option<&Active>, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
         let ways: Vec<f64> = moves.iter().map(Vec3::norm).collect();
-        let search = Search { x, moves, ways: &ways, reach };
+        let search = PairSearch { x, moves, ways: &ways, reach };
         let swept = self.swept(x, moves);
         let mut pairs = self.meetings(active, &swept, reach, &|s, t, out| self.narrow(s, t, &search, out));
         pairs.par_sort_unstable();
@@ -171,7 +171,7 @@ impl<V: BoundingVolume> ClothTree<V> {
     }
 
     /// Adds the pairs of features that two triangles answer for and that may come within reach.
-    fn narrow(&self, s: usize, t: usize, search: &Search<'_>, out: &mut Vec<Pair>) {
+    fn narrow(&self, s: usize, t: usize, search: &PairSearch<'_>, out: &mut Vec<Pair>) {
         let (a, b) = (&self.triangles[s], &self.triangles[t]);
         if search.is_far(a, b) {
             return;
@@ -197,7 +197,7 @@ impl<V: BoundingVolume> ClothTree<V> {
 }
 
 /// What pairs are sought by.
-struct Search<'s> {
+struct PairSearch<'s> {
     x: &'s [Vec3],
     moves: &'s [Vec3],
     /// Lengths of the moves.
@@ -205,7 +205,7 @@ struct Search<'s> {
     reach: f64,
 }
 
-impl Search<'_> {
+impl PairSearch<'_> {
     /// Keeps a pair that may come within reach; tests from cheap to exact.
     fn keep(&self, pair: Pair, out: &mut Vec<Pair>) {
         let at = pair.at(self.x);

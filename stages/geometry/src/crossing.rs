@@ -22,12 +22,12 @@ const FLAT: f64 = 1e-9;
 const CHUNK: usize = 256;
 
 /// A mesh: vertices and triangles.
-pub type Mesh<'a> = (&'a [Vec3], &'a [[u32; 3]]);
+pub type LentMesh<'a> = (&'a [Vec3], &'a [[u32; 3]]);
 
 /// Pairs of a triangle of one mesh and one of the other that cross, in this order, ascending.
 /// Triangles with a vertex that is no finite number are in none.
 #[must_use]
-pub fn between_meshes(one: Mesh<'_>, other: Mesh<'_>) -> Vec<[u32; 2]> {
+pub fn between_meshes(one: LentMesh<'_>, other: LentMesh<'_>) -> Vec<[u32; 2]> {
     let (one, other) = (finite_triangles(one), finite_triangles(other));
     let mut pairs = match one.len() <= other.len() {
         true => crossings_of(&one, &other),
@@ -38,7 +38,7 @@ pub fn between_meshes(one: Mesh<'_>, other: Mesh<'_>) -> Vec<[u32; 2]> {
 }
 
 /// The corners of each triangle, with its number.
-fn finite_triangles((vertices, triangles): Mesh<'_>) -> Vec<(u32, Corners)> {
+fn finite_triangles((vertices, triangles): LentMesh<'_>) -> Vec<(u32, Corners)> {
     let corners = triangles.iter().map(|t| t.map(|i| vertices[i as usize]));
     (0..).zip(corners).filter(|(_, t)| t.iter().all(|p| p.iter().all(|x| x.is_finite()))).collect()
 }

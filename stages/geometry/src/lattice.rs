@@ -29,7 +29,7 @@ const SLACK: f64 = 1e-12;
 
 /// The lattice.
 #[derive(Debug, Default)]
-pub struct Lattice {
+pub struct DistanceLattice {
     origin: Vec3,
     cell: f64,
     counts: [usize; 3],
@@ -41,7 +41,7 @@ pub struct Lattice {
 /// A cell that is not filled: the bits of no distance, since a missing one is the usual NaN.
 const UNKNOWN: u64 = u64::MAX;
 
-impl Lattice {
+impl DistanceLattice {
     /// The empty lattice around `points`.
     pub fn around(points: &[Vec3]) -> Self {
         let frame = Aabb::fit(points);
@@ -50,7 +50,7 @@ impl Lattice {
         let counts = [0, 1, 2].map(|k| (extent[k] / cell).ceil().max(1.0) as usize);
         let slack = SLACK * (frame.min.amax().max(frame.max.amax()) + cell);
         let distances = (0..counts.iter().product()).map(|_| AtomicU64::new(UNKNOWN)).collect();
-        Lattice { origin: frame.min, cell, counts, distances, slack }
+        DistanceLattice { origin: frame.min, cell, counts, distances, slack }
     }
 
     /// Fills every cell; `distance` gives the signed distance of a point whose skin is within a

@@ -4,11 +4,11 @@ use crate::Vec3;
 use std::f64::consts::{PI, TAU};
 
 /// Vertices and triangles.
-pub type Shape = (Vec<Vec3>, Vec<[u32; 3]>);
+pub type ShapeMesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// The box from `low` to `high`, two triangles a face, facing outwards.
 #[must_use]
-pub fn block(low: [f64; 3], high: [f64; 3]) -> Shape {
+pub fn block(low: [f64; 3], high: [f64; 3]) -> ShapeMesh {
     let corner =
         |i: usize| Vec3::from(std::array::from_fn(|k| if i & (1 << k) == 0 { low[k] } else { high[k] }));
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -18,13 +18,13 @@ pub fn block(low: [f64; 3], high: [f64; 3]) -> Shape {
 
 /// The cube from -h to h.
 #[must_use]
-pub fn cube(h: f64) -> Shape {
+pub fn cube(h: f64) -> ShapeMesh {
     block([-h; 3], [h; 3])
 }
 
 /// A sphere about the origin of `2 * columns * (rows - 1)` triangles, its vertices on the radius.
 #[must_use]
-pub fn sphere(radius: f64, rows: u32, columns: u32) -> Shape {
+pub fn sphere(radius: f64, rows: u32, columns: u32) -> ShapeMesh {
     let mut positions = vec![Vec3::new(0.0, radius, 0.0), Vec3::new(0.0, -radius, 0.0)];
     for r in 1..rows {
         let theta = PI * f64::from(r) / f64::from(rows);
@@ -49,7 +49,7 @@ pub fn sphere(radius: f64, rows: u32, columns: u32) -> Shape {
 
 /// A sheet of `2 * n * n` triangles over the unit square, lifted by `height(x, y)`.
 #[must_use]
-pub fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> Shape {
+pub fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> ShapeMesh {
     let at = |i: u32| f64::from(i) / f64::from(n);
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
@@ -67,7 +67,7 @@ pub fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> Shape {
 
 /// Two pieces of cloth as one.
 #[must_use]
-pub fn both(mut a: Shape, b: Shape) -> Shape {
+pub fn both(mut a: ShapeMesh, b: ShapeMesh) -> ShapeMesh {
     let offset = a.0.len() as u32;
     a.0.extend(b.0);
     a.1.extend(b.1.into_iter().map(|t| t.map(|i| i + offset)));
@@ -86,7 +86,7 @@ pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
 /// A soup of triangles of size `size` in the unit cube; every third shares a vertex with the one
 /// before.
 #[must_use]
-pub fn soup(seed: u64, count: u32, size: f64) -> Shape {
+pub fn soup(seed: u64, count: u32, size: f64) -> ShapeMesh {
     let mut next = numbers(seed);
     let mut point = move |scale: f64| Vec3::new(next() * scale, next() * scale, next() * scale);
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());

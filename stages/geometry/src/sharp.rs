@@ -43,7 +43,7 @@ const LENIENT: f64 = 0.02;
 
 /// A sharp edge or corner.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Feature {
+pub struct SharpFeature {
     /// Whether it meets edges of the cloth, or, a corner, its triangles.
     pub kind: Kind,
     /// Its two ends; of a corner the same place.
@@ -67,11 +67,11 @@ pub enum Side {
 /// The sharp features of a body.
 #[derive(Debug, Clone)]
 pub struct Sharp {
-    features: Vec<Feature>,
+    features: Vec<SharpFeature>,
     bvh: Bvh<Aabb>,
 }
 
-impl Feature {
+impl SharpFeature {
     /// Where the point lies that is `off` from the closest point of the feature.
     #[must_use]
     pub fn side(&self, off: &Vec3) -> Side {
@@ -105,7 +105,7 @@ impl Sharp {
 
     /// A feature.
     #[must_use]
-    pub fn feature(&self, k: u32) -> &Feature {
+    pub fn feature(&self, k: u32) -> &SharpFeature {
         &self.features[k as usize]
     }
 
@@ -139,14 +139,14 @@ impl Sharp {
 }
 
 /// An edge of the mesh: its ends, the lower one first, and the corners across it.
-struct Edge {
+struct MeshEdge {
     ends: [u32; 2],
     across: [u32; 2],
     /// Cosine of the angle between its faces; less than 1 only where they bend outwards.
     cosine: f64,
 }
 
-fn features(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Feature> {
+fn features(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<SharpFeature> {
     let place = |v: u32| vertices[v as usize];
     let face = |t: &[u32; 3]| {
         let [a, b, c] = t.map(place);
@@ -160,7 +160,7 @@ fn features(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Feature> {
     }
     let edges = edges(vertices, triangles, &faces, &bends);
     let mut corner = far_from_mean(triangles, &faces, &means, SHARP_CORNER);
-    let at_corner = |e: &Edge| e.ends.iter().any(|&v| corner[v as usize]);
+    let at_corner = |e: &MeshEdge| e.ends.iter().any(|&v| corner[v as usize]);
     let sharp: Vec<bool> =
         edges.iter().map(|e| e.cosine < SHARP_EDGE || e.cosine < BENT && at_corner(e)).collect();
     for (e, _) in edges.iter().zip(&sharp).filter(|(_, s)| **s) {
@@ -172,22 +172,22 @@ fn features(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Feature> {
         sides[e.ends[0] as usize].push(along);
         sides[e.ends[1] as usize].push(-along);
     }
-    let ridge = |e: &Edge| {
+    let ridge = |e: &MeshEdge| {
         let ends = e.ends.map(place);
         let along = (ends[1] - ends[0]).try_normalize(0.0).unwrap_or_default();
         let into = |v: u32| {
             let way = place(v) - ends[0];
             (way - along * along.dot(&way)).try_normalize(0.0).unwrap_or_default()
         };
-        Feature { kind: Kind::EdgeEdge, ends, into: e.across.map(into).to_vec() }
+        SharpFeature { kind: Kind::EdgeEdge, ends, into: e.across.map(into).to_vec() }
     };
     let ridges = edges.iter().zip(&sharp).filter(|(_, s)| **s).map(|(e, _)| ridge(e));
-    let tip = |v: usize| Feature {
+    let tip = |v: usize| SharpFeature {
         kind: Kind::VertexTriangle,
         ends: [vertices[v]; 2],
         into: std::mem::take(&mut sides[v]),
     };
-    let mut all: Vec<Feature> = ridges.collect();
+    let mut all: Vec<SharpFeature> = ridges.collect();
     all.extend((0..vertices.len()).filter(|&v| corner[v]).map(tip));
     all
 }
@@ -215,7 +215,7 @@ fn far_from_mean(triangles: &[[u32; 3]], faces: &[Vec3], means: &[Vec3], least: 
 }
 
 /// The edges of two faces each with an end of those `asked`, in the order of their lower ends.
-fn edges(vertices: &[Vec3], triangles: &[[u32; 3]], faces: &[Vec3], asked: &[bool]) -> Vec<Edge> {
+fn edges(vertices: &[Vec3], triangles: &[[u32; 3]], faces: &[Vec3], asked: &[bool]) -> Vec<MeshEdge> {
     let mut halves = Vec::new();
     for (f, t) in triangles.iter().enumerate().filter(|(_, t)| t.iter().any(|&v| asked[v as usize])) {
         for k in 0..3 {
@@ -232,7 +232,7 @@ fn edges(vertices: &[Vec3], triangles: &[[u32; 3]], faces: &[Vec3], asked: &[boo
         let (n, m) = (&faces[f as usize], &faces[g as usize]);
         let is_convex = n.dot(&(vertices[w as usize] - vertices[low as usize])) < 0.0;
         let cosine = if is_convex { n.dot(m) } else { 1.0 };
-        all.push(Edge { ends: [low, high], across: [v, w], cosine });
+        all.push(MeshEdge { ends: [low, high], across: [v, w], cosine });
     }
     all
 }

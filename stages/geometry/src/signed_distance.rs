@@ -51,7 +51,7 @@ pub struct Nearest {
 
 /// Where a path first enters the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Entry {
+pub struct PathEntry {
     /// The share of the path, 0 to 1.
     pub share: f64,
     /// Unit normal of the triangle that it enters through.
@@ -121,7 +121,7 @@ impl<V: BoundingVolume> SignedDistance<V> {
     /// Where the path from `p` to `q` first enters; nothing for a path that only leaves, or is no
     /// finite number.
     #[must_use]
-    pub fn entry(&self, p: &Vec3, q: &Vec3) -> Option<Entry> {
+    pub fn entry(&self, p: &Vec3, q: &Vec3) -> Option<PathEntry> {
         if !p.iter().chain(q).all(|x| x.is_finite()) {
             return None;
         }
@@ -134,7 +134,7 @@ impl<V: BoundingVolume> SignedDistance<V> {
                 first = Some((s, t));
             }
         });
-        first.map(|(share, t)| Entry { share, normal: self.normals[t as usize].face })
+        first.map(|(share, t)| PathEntry { share, normal: self.normals[t as usize].face })
     }
 }
 

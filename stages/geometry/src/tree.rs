@@ -2,9 +2,9 @@
 //!
 //! Built top-down by the surface-area heuristic on 12 bins along the longest axis (Wald 2007), in
 //! an order that depends on the input alone; O(n log n). Parts lie in depth-first order, so that a
-//! fit is one backward sweep. The tree holds no volumes: [`Tree::fit`] gives one a part, so that
-//! one tree serves any volume, and cloth that moves. [`Bvh`] is a tree with the volumes of things
-//! that stand still.
+//! fit is one backward sweep. The tree holds no volumes: [`VolumeTree::fit`] gives one a part, so
+//! that one tree serves any volume, and cloth that moves. [`Bvh`] is a tree with the volumes of
+//! things that stand still.
 //!
 //! Limits: up to 2^32 things. Depth stays under [`MAX_DEPTH`] + 32, so recursion is safe.
 
@@ -21,7 +21,7 @@ pub use meet::Meeting;
 const MAX_DEPTH: usize = 40;
 
 #[derive(Debug, Clone, Copy)]
-struct Part {
+struct TreePart {
     /// First thing of a leaf.
     first: u32,
     /// Number of things; 0 for an inner part, whose left child follows it.
@@ -32,11 +32,11 @@ struct Part {
 
 /// The tree. Things are known by their place in the tree's order.
 #[derive(Debug, Clone, Default)]
-pub struct Tree {
-    parts: Vec<Part>,
+pub struct VolumeTree {
+    parts: Vec<TreePart>,
 }
 
-impl Tree {
+impl VolumeTree {
     /// Whether it is over nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -83,8 +83,8 @@ impl Tree {
         self.sweep(leaf, V::merge)
     }
 
-    /// A volume a part, each fitted to all points below it: tighter than [`Tree::fit`], for what
-    /// stands still.
+    /// A volume a part, each fitted to all points below it: tighter than [`VolumeTree::fit`], for
+    /// what stands still.
     #[must_use]
     pub fn fit_tightly<V: BoundingVolume>(&self, corners: &[Corners]) -> Vec<V> {
         let ranges = self.sweep(|r| (r.start, r.end), |a, b| (a.0, b.1));
@@ -167,7 +167,7 @@ impl Tree {
 /// A tree over triangles that stand still, with its volumes.
 #[derive(Debug, Clone)]
 pub struct Bvh<V> {
-    tree: Tree,
+    tree: VolumeTree,
     volumes: Vec<V>,
     /// The number of each triangle, in the order of the tree.
     order: Vec<u32>,
@@ -177,18 +177,18 @@ impl<V: BoundingVolume> Bvh<V> {
     /// The tree over triangles, at most `leaf` of them together, each part fitted to its points.
     #[must_use]
     pub fn new(corners: &[Corners], leaf: usize) -> Self {
-        let (tree, order) = Tree::over(corners, leaf);
+        let (tree, order) = VolumeTree::over(corners, leaf);
         let sorted: Vec<Corners> = order.iter().map(|&i| corners[i as usize]).collect();
         let volumes = tree.fit_tightly(&sorted);
         Self { tree, volumes, order }
     }
 
-    /// As [`Tree::nearest`]; triangles by their numbers.
+    /// As [`VolumeTree::nearest`]; triangles by their numbers.
     pub fn nearest(&self, p: &Vec3, bound: f64, mut visit: impl FnMut(u32, f64) -> f64) {
         self.tree.nearest(&self.volumes, p, bound, |i, bound| visit(self.order[i], bound));
     }
 
-    /// As [`Tree::within`]; triangles by their numbers.
+    /// As [`VolumeTree::within`]; triangles by their numbers.
     pub fn within(&self, around: &V, reach: f64, mut visit: impl FnMut(u32)) {
         self.tree.within(&self.volumes, around, reach, |i| visit(self.order[i]));
     }

@@ -29,7 +29,7 @@ pub struct Steps<'a> {
 }
 
 /// When the rounds end.
-pub struct End {
+pub struct StoppingRule {
     /// The residual against that at the start.
     pub residual: f64,
     /// The most rounds.
@@ -44,7 +44,7 @@ impl Grid {
     pub fn between_fixed(
         &self,
         fixed: &[Option<f64>],
-        end: &End,
+        end: &StoppingRule,
         cx: &Context,
     ) -> Result<Vec<f64>, StageError> {
         let x: Vec<f64> = fixed.iter().map(|f| f.unwrap_or(0.0)).collect();
@@ -56,7 +56,12 @@ impl Grid {
     /// so that slow changes are right after few rounds.
     ///
     /// Errors: the run was stopped.
-    pub fn sum_of(&self, steps: &Steps<'_>, end: &End, cx: &Context) -> Result<Vec<f64>, StageError> {
+    pub fn sum_of(
+        &self,
+        steps: &Steps<'_>,
+        end: &StoppingRule,
+        cx: &Context,
+    ) -> Result<Vec<f64>, StageError> {
         let n = self.right.len();
         let start = match self.coarser(steps) {
             None => vec![0.0; n],
@@ -106,7 +111,7 @@ impl Grid {
         mut x: Vec<f64>,
         steps: Option<&Steps<'_>>,
         fixed: &[Option<f64>],
-        end: &End,
+        end: &StoppingRule,
         cx: &Context,
     ) -> Result<Vec<f64>, StageError> {
         let diagonal = self.diagonal();
@@ -199,7 +204,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    const END: End = End { residual: 1e-10, rounds: 200 };
+    const END: StoppingRule = StoppingRule { residual: 1e-10, rounds: 200 };
 
     fn joined(width: usize, height: usize) -> Grid {
         let right = (0..width * height).map(|i| if i % width + 1 < width { 1.0 } else { 0.0 }).collect();
@@ -221,7 +226,7 @@ mod tests {
         let step = |i: usize, next: usize, last: bool| if last { 0.0 } else { wave(i + next) - wave(i) };
         let right: Vec<f64> = (0..w * h).map(|i| step(i, 1, i % w + 1 == w)).collect();
         let down: Vec<f64> = (0..w * h).map(|i| step(i, w, i + w >= w * h)).collect();
-        let few = End { residual: 1e-6, rounds: 40 };
+        let few = StoppingRule { residual: 1e-6, rounds: 40 };
         let x = joined(w, h).sum_of(&Steps { right: &right, down: &down }, &few, &Context::quiet()).unwrap();
         let off = x[0] - wave(0);
         let worst = x.iter().enumerate().map(|(i, x)| (x - wave(i) - off).abs()).fold(0.0, f64::max);

@@ -145,14 +145,14 @@ pub(crate) fn darts(pattern: &Pattern, p: &Piece) -> Vec<usize> {
 
 /// A straight piece of the line that is sewn along, with its allowance and the number of its edge.
 #[derive(Debug, Clone, Copy)]
-struct Segment {
+struct SewnSegment {
     a: Point2,
     b: Point2,
     width: f64,
     edge: usize,
 }
 
-impl Segment {
+impl SewnSegment {
     fn way(&self) -> Vector2 {
         (self.b - self.a).normalize()
     }
@@ -174,9 +174,9 @@ fn cut_line<'a>(
     if widths.iter().all(|w| *w == 0.0) {
         return None;
     }
-    let outline: Vec<Segment> = (0..widths.len()).flat_map(|k| segments(p, k, widths)).collect();
+    let outline: Vec<SewnSegment> = (0..widths.len()).flat_map(|k| segments(p, k, widths)).collect();
     let base = folded(p, widths, darts);
-    let ring = |s: &[Segment]| s.iter().map(|s| [s.a.x, s.a.y]).collect::<Vec<_>>();
+    let ring = |s: &[SewnSegment]| s.iter().map(|s| [s.a.x, s.a.y]).collect::<Vec<_>>();
     let mut polygons = vec![ring(&outline), ring(&base)];
     let n = base.len();
     for k in 0..n {
@@ -190,16 +190,16 @@ fn cut_line<'a>(
 }
 
 /// The segments of an edge that have length.
-fn segments(p: &Piece, edge: usize, widths: &[f64]) -> Vec<Segment> {
+fn segments(p: &Piece, edge: usize, widths: &[f64]) -> Vec<SewnSegment> {
     let n = p.outer.corners.len();
     let (start, end) = (p.outer.corners[edge], p.outer.corners[(edge + 1) % n]);
     let points = flatten(start, end, &p.outer.edges[edge].curve, TOLERANCE);
     let pairs = points.windows(2).filter(|w| (w[1] - w[0]).norm() > 1e-12);
-    pairs.map(|w| Segment { a: w[0], b: w[1], width: widths[edge], edge }).collect()
+    pairs.map(|w| SewnSegment { a: w[0], b: w[1], width: widths[edge], edge }).collect()
 }
 
 /// The segments of the outline, each dart folded away.
-fn folded(p: &Piece, widths: &[f64], darts: &[usize]) -> Vec<Segment> {
+fn folded(p: &Piece, widths: &[f64], darts: &[usize]) -> Vec<SewnSegment> {
     let n = widths.len();
     let leg = |k: usize| darts.iter().any(|d| *d == k || (d + 1) % n == k);
     let mut out = Vec::new();
@@ -208,11 +208,11 @@ fn folded(p: &Piece, widths: &[f64], darts: &[usize]) -> Vec<Segment> {
             let (before, after) = ((k + n - 1) % n, (k + 2) % n);
             let beside = |other: usize| if leg(other) { widths[k] } else { widths[other] };
             let (a, b) = (p.outer.corners[k], p.outer.corners[after]);
-            let one = Segment { a, b, width: beside(before), edge: before };
+            let one = SewnSegment { a, b, width: beside(before), edge: before };
             match roof(p, k) {
                 Some(top) => {
-                    out.push(Segment { b: top, ..one });
-                    out.push(Segment { a: top, b, width: beside(after), edge: after });
+                    out.push(SewnSegment { b: top, ..one });
+                    out.push(SewnSegment { a: top, b, width: beside(after), edge: after });
                 }
                 None => out.push(one),
             }
@@ -252,13 +252,13 @@ fn roof(p: &Piece, first: usize) -> Option<Point2> {
 }
 
 /// The allowance along a segment.
-fn strip(s: &Segment) -> Option<Vec<[f64; 2]>> {
+fn strip(s: &SewnSegment) -> Option<Vec<[f64; 2]>> {
     let out = s.out();
     (s.width > 0.0).then(|| [s.a, s.a + out, s.b + out, s.b].map(|p| [p.x, p.y]).into())
 }
 
 /// The allowance at the corner between two segments where the line turns outwards.
-fn mitre(one: &Segment, next: &Segment) -> Option<Vec<[f64; 2]>> {
+fn mitre(one: &SewnSegment, next: &SewnSegment) -> Option<Vec<[f64; 2]>> {
     let (d, e) = (one.way(), next.way());
     let (sine, cosine) = (d.perp(&e), d.dot(&e));
     if (sine <= 1e-9 && cosine > 0.0) || (sine < 0.0) || one.width.max(next.width) == 0.0 {
@@ -302,7 +302,7 @@ fn outer(polygons: &[Vec<[f64; 2]>]) -> Option<Vec<Point2>> {
 }
 
 /// Tells edges of whose allowance little is left, because that of others is in its way.
-fn tell<'a>(p: &'a Piece, base: &[Segment], line: &[Point2], trimmed: &mut Vec<Trimmed<'a>>) {
+fn tell<'a>(p: &'a Piece, base: &[SewnSegment], line: &[Point2], trimmed: &mut Vec<Trimmed<'a>>) {
     let mut of_edge: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
     // Of a finely drawn curve every so manyth chord tells enough.
     for s in base.iter().step_by(base.len().div_ceil(LOOKED)).filter(|s| s.width > 0.0) {

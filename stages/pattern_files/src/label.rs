@@ -22,11 +22,11 @@ const AROUND: f64 = 0.35;
 pub(crate) const ROUGH: f64 = 2e-4;
 
 /// A line of words: its text, its size as a share of that of the name, and whether it is bold.
-pub(crate) type Line = (String, f64, bool);
+pub(crate) type LabelLine = (String, f64, bool);
 
 /// A place for a block of words, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct LabelPlace {
     /// Its middle.
     pub at: Point2,
     /// The size of the name.
@@ -37,7 +37,7 @@ pub(crate) struct Place {
 
 /// The place for the words of a piece; the polygon is its outline, lines are all that is drawn on
 /// it, mm.
-pub(crate) fn place(words: &[Line], polygon: &[Point2], lines: &[[Point2; 2]]) -> Place {
+pub(crate) fn place(words: &[LabelLine], polygon: &[Point2], lines: &[[Point2; 2]]) -> LabelPlace {
     let (lo, hi) = bounds(polygon);
     let middle = nalgebra::center(&lo, &hi);
     let mut inside: Vec<Point2> = places(lo, hi).filter(|at| contains(polygon, *at)).collect();
@@ -47,15 +47,15 @@ pub(crate) fn place(words: &[Line], polygon: &[Point2], lines: &[[Point2; 2]]) -
             let half = half(words, size, upright);
             let free = |at: &&Point2| !lines.iter().any(|[a, b]| crosses(*a, *b, (*at - half, *at + half)));
             if let Some(at) = inside.iter().find(free) {
-                return Place { at: *at, size, upright };
+                return LabelPlace { at: *at, size, upright };
             }
         }
     }
-    Place { at: middle, size: SIZES[SIZES.len() - 1], upright: false }
+    LabelPlace { at: middle, size: SIZES[SIZES.len() - 1], upright: false }
 }
 
 /// Half the size of the block.
-fn half(words: &[Line], size: f64, upright: bool) -> Vector2 {
+fn half(words: &[LabelLine], size: f64, upright: bool) -> Vector2 {
     let wide =
         words.iter().map(|(text, share, bold)| font::width(text, size * share, *bold)).fold(0.0, f64::max);
     let [w, h] = [wide, height(words, size)].map(|s| s / 2.0 + AROUND * size);
@@ -63,7 +63,7 @@ fn half(words: &[Line], size: f64, upright: bool) -> Vector2 {
 }
 
 /// The height of the block, mm.
-pub(crate) fn height(words: &[Line], size: f64) -> f64 {
+pub(crate) fn height(words: &[LabelLine], size: f64) -> f64 {
     words.iter().map(|(_, share, _)| size * share * LEADING).sum()
 }
 

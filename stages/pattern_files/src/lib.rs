@@ -23,6 +23,6 @@ pub mod svg;
 mod written;
 
 pub use error::{FARTHEST, WriteError};
-pub use options::Options;
+pub use options::DrawingOptions;
 pub use sidecar::{kind_word, sidecar};
 pub use written::Written;

@@ -4,7 +4,7 @@ use crate::allowance::Allowances;
 
 /// Options of drawings.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Options {
+pub struct DrawingOptions {
     /// Seam allowance; none by default.
     pub allowances: Allowances,
     /// The size that the pattern is drafted for, such as `M`; empty where it has no name.

@@ -8,7 +8,7 @@ use toile_core::artifact::{EdgeCurve, EdgePath, PatternLoop, Point2};
 
 /// A curve of a file, a part of an edge.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Part {
+pub(crate) struct EdgePart {
     /// The number of the edge in its loop.
     pub edge: usize,
     pub start: Point2,
@@ -18,12 +18,12 @@ pub(crate) struct Part {
 
 /// The parts of a loop in its order; an edge is halved where `closes` says of its chord and its
 /// length, metres, that its ends are too near to each other.
-pub(crate) fn parts(l: &PatternLoop, closes: impl Fn(f64, f64) -> bool) -> Vec<Part> {
+pub(crate) fn parts(l: &PatternLoop, closes: impl Fn(f64, f64) -> bool) -> Vec<EdgePart> {
     let n = l.corners.len();
     let mut out = Vec::with_capacity(n);
     for (edge, e) in l.edges.iter().enumerate() {
         let (start, end) = (l.corners[edge], l.corners[(edge + 1) % n]);
-        let whole = Part { edge, start, end, curve: e.curve.clone() };
+        let whole = EdgePart { edge, start, end, curve: e.curve.clone() };
         match closes((end - start).norm(), l.path(edge).length()) {
             true => out.extend(halved(whole)),
             false => out.push(whole),
@@ -33,8 +33,8 @@ pub(crate) fn parts(l: &PatternLoop, closes: impl Fn(f64, f64) -> bool) -> Vec<P
 }
 
 /// Both halves of a curve; it alone where it has none.
-fn halved(whole: Part) -> Vec<Part> {
-    let Part { edge, start, end, curve } = whole;
+fn halved(whole: EdgePart) -> Vec<EdgePart> {
+    let EdgePart { edge, start, end, curve } = whole;
     let k = |p: Point2| kurbo::Point::new(p.x, p.y);
     let p = |q: kurbo::Point| Point2::new(q.x, q.y);
     let (middle, first, second) = match &curve {
@@ -62,8 +62,11 @@ fn halved(whole: Part) -> Vec<Part> {
             (path.at(path.length() / 2.0), half.clone(), half)
         }
         EdgeCurve::Line | EdgeCurve::Arc { .. } | EdgeCurve::Polyline { .. } => {
-            return vec![Part { edge, start, end, curve }];
+            return vec![EdgePart { edge, start, end, curve }];
         }
     };
-    vec![Part { edge, start, end: middle, curve: first }, Part { edge, start: middle, end, curve: second }]
+    vec![
+        EdgePart { edge, start, end: middle, curve: first },
+        EdgePart { edge, start: middle, end, curve: second },
+    ]
 }

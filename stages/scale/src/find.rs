@@ -1,6 +1,6 @@
 //! The way in: checks what was given and hands it to the finder of the object's kind.
 
-use crate::{Found, Object, Options, ScaleError, chessboard, rectangle, ruler};
+use crate::{Found, KnownObject, ScaleError, ScaleOptions, chessboard, rectangle, ruler};
 use image::RgbImage;
 
 /// Sides of a photo that is looked at, pixels, and its most pixels.
@@ -11,15 +11,15 @@ pub(crate) const MOST_PIXELS: u64 = 200_000_000;
 ///
 /// # Errors
 /// See [`ScaleError`].
-pub fn find(photo: &RgbImage, object: Object) -> Result<Found, ScaleError> {
-    find_with(photo, object, &Options::default())
+pub fn find(photo: &RgbImage, object: KnownObject) -> Result<Found, ScaleError> {
+    find_with(photo, object, &ScaleOptions::default())
 }
 
 /// Finds an object of known size in a photo of which more is known.
 ///
 /// # Errors
 /// See [`ScaleError`].
-pub fn find_with(photo: &RgbImage, object: Object, options: &Options) -> Result<Found, ScaleError> {
+pub fn find_with(photo: &RgbImage, object: KnownObject, options: &ScaleOptions) -> Result<Found, ScaleError> {
     check(photo, options)?;
     object.check()?;
     match object.rectangle() {
@@ -29,9 +29,9 @@ pub fn find_with(photo: &RgbImage, object: Object, options: &Options) -> Result<
 }
 
 /// Finds an object that is told by its marks.
-fn marked(photo: &RgbImage, object: Object, options: &Options) -> Result<Found, ScaleError> {
+fn marked(photo: &RgbImage, object: KnownObject, options: &ScaleOptions) -> Result<Found, ScaleError> {
     match object {
-        Object::Chessboard { square_um, corners } => {
+        KnownObject::Chessboard { square_um, corners } => {
             chessboard::find(photo, object, f64::from(square_um) * 1e-6, corners, options)
         }
         _ => ruler::find(photo, object),
@@ -39,7 +39,7 @@ fn marked(photo: &RgbImage, object: Object, options: &Options) -> Result<Found, 
 }
 
 /// Refuses photos and options that are out of range.
-fn check(photo: &RgbImage, options: &Options) -> Result<(), ScaleError> {
+fn check(photo: &RgbImage, options: &ScaleOptions) -> Result<(), ScaleError> {
     check_size(photo)?;
     match options.focal_35mm {
         Some(focal) if !(8.0..=400.0).contains(&focal) => Err(ScaleError::Focal { focal }),

@@ -1,11 +1,11 @@
 //! What was found in a photo.
 
-use crate::Object;
+use crate::KnownObject;
 use nalgebra::{Matrix3, Point2, Vector2};
 
 /// What a found object tells about the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ScaleKind {
     /// The ground's plane: lengths hold all over the photo, whatever the tilt.
     Plane,
     /// A scale along the object alone: lengths hold where the camera looked straight down.
@@ -17,9 +17,9 @@ pub enum Kind {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// What was looked for.
-    pub object: Object,
+    pub object: KnownObject,
     /// What it tells about the ground.
-    pub kind: Kind,
+    pub kind: ScaleKind,
     /// Its corners, clockwise: of a card those of its sides' lines, of a chessboard the outermost
     /// inner ones, of a ruler the ends of its marks' row and of the marks.
     pub corners: [Point2<f64>; 4],
@@ -27,7 +27,7 @@ pub struct Found {
     /// none.
     pub marks: Vec<Point2<f64>>,
     /// From photo pixels to metres on the ground, with the origin at the object's middle, y
-    /// downwards in the photo's sense (no mirror). Of `Kind::Line` a turn and a scale.
+    /// downwards in the photo's sense (no mirror). Of `ScaleKind::Line` a turn and a scale.
     pub homography: Matrix3<f64>,
     /// Photo pixels for a metre at the object's middle (geometric mean over the directions);
     /// above 0.
@@ -37,7 +37,7 @@ pub struct Found {
     /// Share of the outline or of the marks that was seen where it must be, 0 to 1.
     pub confidence: f64,
     /// Angle between the line of sight to the object and the ground's normal, degrees, 0 to 60;
-    /// `None` of `Kind::Line`.
+    /// `None` of `ScaleKind::Line`.
     pub tilt: Option<f64>,
 }
 

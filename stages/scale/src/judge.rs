@@ -1,10 +1,10 @@
 //! Judges a quadrilateral as the picture of a rectangle of known size.
 
-use crate::object::Rectangle;
+use crate::object::RoundedRectangle;
 use crate::pixels::{colour, inside};
-use crate::pose::{self, Camera, Pin, Pose, through};
+use crate::pose::{self, CameraPose, KnownCamera, Pin, through};
 use crate::quads::{Quad, area};
-use crate::side::{Look, Side, across, continues, median, side};
+use crate::side::{MeasuredSide, SideSampling, across, continues, median, side};
 use image::RgbImage;
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 pub(crate) struct Judged {
     /// Clockwise; the first side is a long one.
     pub(crate) corners: [Point2<f64>; 4],
-    pub(crate) pose: Pose,
+    pub(crate) pose: CameraPose,
     /// Mean share of the sides that is seen, 0 to 1.
     pub(crate) coverage: f64,
     /// Scatter of the edges about the fitted rectangle, pixels.
@@ -43,7 +43,12 @@ const SHEET_CONTINUED: usize = 1;
 /// Whether the aspect may be the object's, with errors of about `pixel` at each corner: by the two
 /// columns of the homography with the expected focal length, which must be alike in length and at
 /// right angles.
-pub(crate) fn may_be(corners: &[Point2<f64>; 4], shape: &Rectangle, camera: &Camera, pixel: f64) -> bool {
+pub(crate) fn may_be(
+    corners: &[Point2<f64>; 4],
+    shape: &RoundedRectangle,
+    camera: &KnownCamera,
+    pixel: f64,
+) -> bool {
     let Some((a, b)) = columns(corners, camera) else { return false };
     let short = (corners[2] - corners[1]).norm().min((corners[3] - corners[0]).norm());
     let doubt = 0.08 + 8.0 * pixel / short.max(1.0);
@@ -54,7 +59,7 @@ pub(crate) fn may_be(corners: &[Point2<f64>; 4], shape: &Rectangle, camera: &Cam
 
 /// The pictures of the rectangle's two directions as vectors in space, for the unit square onto the
 /// corners (Heckbert, Fundamentals of texture mapping, 1989).
-fn columns(c: &[Point2<f64>; 4], camera: &Camera) -> Option<(Vector3<f64>, Vector3<f64>)> {
+fn columns(c: &[Point2<f64>; 4], camera: &KnownCamera) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let p = c.map(|p| (p - camera.middle) / camera.focal);
     let (d1, d2, d3) = (p[1] - p[2], p[3] - p[2], p[0] - p[1] + p[2] - p[3]);
     let determinant = d1.perp(&d2);
@@ -71,16 +76,16 @@ pub(crate) fn judge(
     photo: &RgbImage,
     quad: &Quad,
     k: usize,
-    shape: &Rectangle,
-    camera: &Camera,
+    shape: &RoundedRectangle,
+    camera: &KnownCamera,
 ) -> Option<Judged> {
     // Sheets are larger, and a corner may be further off.
     let (step, reach) = if shape.radius > 0.0 { ((k as f64 / 2.0).max(1.0), 4) } else { (k as f64, 5) };
     let inset = 1.3 * shape.radius / shape.short + 0.04;
-    let rough = Look { step, reach, inset, most: 60 };
+    let rough = SideSampling { step, reach, inset, most: 60 };
     let sides = sides(photo, &quad.corners, &rough).filter(|s| distinct(s, 0.8))?;
     let corners = crossings(&sides)?;
-    let beyond = Look { step, reach: 2, inset: 0.0, most: 12 };
+    let beyond = SideSampling { step, reach: 2, inset: 0.0, most: 12 };
     let run_on = continued(photo, &corners, &sides, &beyond);
     if run_on > CONTINUED + 1 || !may_be(&corners, shape, camera, 0.3 * k as f64) {
         return None;
@@ -93,15 +98,15 @@ pub(crate) fn judge(
 fn finely(
     photo: &RgbImage,
     mut corners: [Point2<f64>; 4],
-    rough: &Look,
-) -> Option<([Point2<f64>; 4], [Side; 4])> {
+    rough: &SideSampling,
+) -> Option<([Point2<f64>; 4], [MeasuredSide; 4])> {
     let mut step = rough.step;
     while step > 1.0 {
         step = (step / 2.0).max(1.0);
         let most = if step > 1.0 { 80 } else { 300 };
-        corners = crossings(&sides(photo, &corners, &Look { step, reach: 4, most, ..*rough })?)?;
+        corners = crossings(&sides(photo, &corners, &SideSampling { step, reach: 4, most, ..*rough })?)?;
     }
-    let sides = sides(photo, &corners, &Look { step: 1.0, reach: 3, most: 400, ..*rough })?;
+    let sides = sides(photo, &corners, &SideSampling { step: 1.0, reach: 3, most: 400, ..*rough })?;
     Some((crossings(&sides)?, sides))
 }
 
@@ -109,9 +114,9 @@ fn finely(
 fn measured(
     photo: &RgbImage,
     corners: [Point2<f64>; 4],
-    sides: &[Side; 4],
-    shape: &Rectangle,
-    camera: &Camera,
+    sides: &[MeasuredSide; 4],
+    shape: &RoundedRectangle,
+    camera: &KnownCamera,
 ) -> Option<Judged> {
     if !distinct(sides, 1.0) || area(&corners) <= 0.0 {
         return None;
@@ -146,23 +151,23 @@ fn measured(
     Some(Judged { corners: fitted, pose, coverage, residual, short, merit })
 }
 
-fn sides(photo: &RgbImage, corners: &[Point2<f64>; 4], look: &Look) -> Option<[Side; 4]> {
+fn sides(photo: &RgbImage, corners: &[Point2<f64>; 4], look: &SideSampling) -> Option<[MeasuredSide; 4]> {
     let measure = |i: usize| side(photo, corners[i], corners[(i + 1) % 4], look);
     Some([measure(0)?, measure(1)?, measure(2)?, measure(3)?])
 }
 
-fn distinct(sides: &[Side; 4], share: f64) -> bool {
+fn distinct(sides: &[MeasuredSide; 4], share: f64) -> bool {
     let mean = sides.iter().map(|s| s.coverage).sum::<f64>() / 4.0;
     sides.iter().all(|s| s.coverage >= share * SEEN) && mean >= share * SEEN_MEAN
 }
 
 /// Where the sides' lines cross: corner i lies on sides i - 1 and i.
-fn crossings(sides: &[Side; 4]) -> Option<[Point2<f64>; 4]> {
+fn crossings(sides: &[MeasuredSide; 4]) -> Option<[Point2<f64>; 4]> {
     let cross = |i: usize| crossing(&sides[(i + 3) % 4], &sides[i]);
     Some([cross(0)?, cross(1)?, cross(2)?, cross(3)?])
 }
 
-fn crossing(one: &Side, two: &Side) -> Option<Point2<f64>> {
+fn crossing(one: &MeasuredSide, two: &MeasuredSide) -> Option<Point2<f64>> {
     let (u, v) = (one.b - one.a, two.b - two.a);
     let t = (two.a - one.a).perp(&v) / u.perp(&v);
     let at = one.a + u * t;
@@ -173,14 +178,19 @@ pub(crate) fn shortest(corners: &[Point2<f64>; 4]) -> f64 {
     (0..4).map(|i| (corners[(i + 1) % 4] - corners[i]).norm()).fold(f64::INFINITY, f64::min)
 }
 
-fn posed(corners: &[Point2<f64>; 4], sides: &[Side; 4], shape: &Rectangle, camera: &Camera) -> Option<Pose> {
+fn posed(
+    corners: &[Point2<f64>; 4],
+    sides: &[MeasuredSide; 4],
+    shape: &RoundedRectangle,
+    camera: &KnownCamera,
+) -> Option<CameraPose> {
     let start = pose::homography(&shape.corners(), corners)?;
     pose::fit(&start, &pins(corners, sides, shape), camera)
 }
 
 /// Two pins a side, where the errors of a line that is seen evenly along its length do not depend
 /// on each other.
-fn pins(corners: &[Point2<f64>; 4], sides: &[Side; 4], shape: &Rectangle) -> Vec<Pin> {
+fn pins(corners: &[Point2<f64>; 4], sides: &[MeasuredSide; 4], shape: &RoundedRectangle) -> Vec<Pin> {
     let model = shape.corners();
     let mut pins = Vec::with_capacity(8);
     for (i, s) in sides.iter().enumerate() {
@@ -211,10 +221,15 @@ fn offs(h: &Matrix3<f64>, pins: &[Pin]) -> f64 {
 }
 
 /// How the sides' continuations are looked at.
-const BEYOND: Look = Look { step: 1.0, reach: 2, inset: 0.0, most: 40 };
+const BEYOND: SideSampling = SideSampling { step: 1.0, reach: 2, inset: 0.0, most: 40 };
 
 /// How many sides run on beyond their corners, of eight.
-fn continued(photo: &RgbImage, corners: &[Point2<f64>; 4], sides: &[Side; 4], look: &Look) -> usize {
+fn continued(
+    photo: &RgbImage,
+    corners: &[Point2<f64>; 4],
+    sides: &[MeasuredSide; 4],
+    look: &SideSampling,
+) -> usize {
     let mut count = 0;
     for (i, s) in sides.iter().enumerate() {
         let (a, b) = (corners[i], corners[(i + 1) % 4]);
@@ -231,7 +246,7 @@ fn continued(photo: &RgbImage, corners: &[Point2<f64>; 4], sides: &[Side; 4], lo
 
 /// How the corners look.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Corners {
+enum CornerLook {
     /// There are too few pixels to tell.
     Small,
     /// The object has the ground's colour at its corners.
@@ -242,10 +257,10 @@ enum Corners {
 
 /// Whether the corners are as round or as sharp as the object's, as far as the photo shows it.
 /// Where it does not, all else must be sure.
-fn right_corners(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle, sure: bool) -> bool {
+fn right_corners(photo: &RgbImage, h: &Matrix3<f64>, shape: &RoundedRectangle, sure: bool) -> bool {
     match sharpness(photo, h, shape) {
-        Corners::Small | Corners::Unseen => sure,
-        Corners::Seen(s) => (shape.radius > 0.0 && s < 0.5) || (shape.radius == 0.0 && s > 0.45),
+        CornerLook::Small | CornerLook::Unseen => sure,
+        CornerLook::Seen(s) => (shape.radius > 0.0 && s < 0.5) || (shape.radius == 0.0 && s > 0.45),
     }
 }
 
@@ -258,7 +273,7 @@ const WALKED: usize = 24;
 
 /// Whether another edge runs along a side just beyond it: then that side is a stripe printed on a
 /// card, and the card is larger.
-fn within(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
+fn within(photo: &RgbImage, h: &Matrix3<f64>, shape: &RoundedRectangle) -> bool {
     let corners = shape.corners();
     (0..4).any(|i| {
         let (a, b) = (corners[i], corners[(i + 1) % 4]);
@@ -285,7 +300,7 @@ const FEW: f64 = 80.0;
 
 /// Whether a sheet is of one hue, as paper is whatever the ink and shadow; cards may have any
 /// print.
-fn even(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
+fn even(photo: &RgbImage, h: &Matrix3<f64>, shape: &RoundedRectangle) -> bool {
     if shape.radius > 0.0 {
         return true;
     }
@@ -309,7 +324,7 @@ const ONE_SIDED: f64 = 0.6;
 
 /// How far a sheet is lighter all along its outline than what it lies on, or darker: 1 all along, 0
 /// as often the one as the other, as is the outline of some tiles of a floor.
-fn one_sided(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> f64 {
+fn one_sided(photo: &RgbImage, h: &Matrix3<f64>, shape: &RoundedRectangle) -> f64 {
     let corners = shape.corners();
     let (mut sum, mut sizes) = (0.0, 1e-9);
     for (i, n) in (0..4).flat_map(|i| (0..40).map(move |n| (i, n))) {
@@ -331,14 +346,14 @@ const HUE: f64 = 0.035;
 const ROUND: f64 = 0.0589;
 
 /// Where the edge lies on rays from the centres of a card's corners.
-fn sharpness(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> Corners {
+fn sharpness(photo: &RgbImage, h: &Matrix3<f64>, shape: &RoundedRectangle) -> CornerLook {
     let radius = ROUND * shape.short;
     let mut values = Vec::new();
     for corner in shape.corners() {
         let centre = corner - Vector2::new(corner.x.signum(), corner.y.signum()) * radius;
         let pixels = (through(h, corner) - through(h, centre)).norm() / 2f64.sqrt();
         if pixels < 2.6 {
-            return Corners::Small;
+            return CornerLook::Small;
         }
         for degrees in [35.0f64, 40.0, 45.0, 50.0, 55.0] {
             let (sin, cos) = degrees.to_radians().sin_cos();
@@ -349,7 +364,7 @@ fn sharpness(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> Corners {
         }
     }
     let seen = values.len() >= 8;
-    median(values).filter(|_| seen).map_or(Corners::Unseen, Corners::Seen)
+    median(values).filter(|_| seen).map_or(CornerLook::Unseen, CornerLook::Seen)
 }
 
 /// Where along a ray from a corner's centre the colour is half that of outside; in radii.

@@ -13,14 +13,14 @@
 //!
 //! ```
 //! use image::{Rgb, RgbImage};
-//! use toile_scale::{Object, RectifyOptions, find, rectify};
+//! use toile_scale::{KnownObject, RectifyOptions, find, rectify};
 //!
 //! // White paper on a dark ground from straight above, 1000 pixels a metre.
 //! let mut photo = RgbImage::from_pixel(800, 600, Rgb([70, 60, 50]));
 //! for (x, y) in (200..497).flat_map(|x| (150..360).map(move |y| (x, y))) {
 //!     photo.put_pixel(x, y, Rgb([235, 235, 230]));
 //! }
-//! let found = find(&photo, Object::A4)?;
+//! let found = find(&photo, KnownObject::A4)?;
 //! assert!((found.px_per_metre - 1000.0).abs() < 3.0);
 //! let above = rectify(&photo, &found, &RectifyOptions::default())?;
 //! assert!(above.px_per_metre > 950.0 && above.image.width() > 780);
@@ -57,7 +57,7 @@ mod side;
 pub use draw::draw;
 pub use error::ScaleError;
 pub use find::{find, find_with};
-pub use found::{Found, Kind};
-pub use object::Object;
-pub use options::Options;
+pub use found::{Found, ScaleKind};
+pub use object::KnownObject;
+pub use options::ScaleOptions;
 pub use rectify::{Rectified, RectifyOptions, Sampling, rectify};

@@ -5,7 +5,7 @@ use nalgebra::Point2;
 
 /// An object of known size, laid flat on the garment's ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Object {
+pub enum KnownObject {
     /// A bank card, ISO/IEC 7810 ID-1: 85.60 x 53.98 mm, corners of 3.18 mm radius, of any colour
     /// and print.
     BankCard,
@@ -26,14 +26,14 @@ pub enum Object {
 
 /// A rectangle's sides and corners, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Rectangle {
+pub(crate) struct RoundedRectangle {
     pub(crate) long: f64,
     pub(crate) short: f64,
     /// Radius of the corners; 0 for sharp ones.
     pub(crate) radius: f64,
 }
 
-impl Rectangle {
+impl RoundedRectangle {
     /// The corners around the middle, clockwise where y grows downwards; the first side is the long
     /// one.
     pub(crate) fn corners(&self) -> [Point2<f64>; 4] {
@@ -42,30 +42,30 @@ impl Rectangle {
     }
 }
 
-impl Object {
+impl KnownObject {
     /// What the object is called in messages.
     pub fn name(&self) -> &'static str {
         match self {
-            Object::BankCard => "bank card",
-            Object::A4 => "A4 sheet",
-            Object::Letter => "Letter sheet",
-            Object::Chessboard { .. } => "chessboard",
-            Object::Ruler => "ruler",
+            KnownObject::BankCard => "bank card",
+            KnownObject::A4 => "A4 sheet",
+            KnownObject::Letter => "Letter sheet",
+            KnownObject::Chessboard { .. } => "chessboard",
+            KnownObject::Ruler => "ruler",
         }
     }
 
-    pub(crate) fn rectangle(&self) -> Option<Rectangle> {
+    pub(crate) fn rectangle(&self) -> Option<RoundedRectangle> {
         match self {
-            Object::BankCard => Some(Rectangle { long: 0.0856, short: 0.05398, radius: 0.00318 }),
-            Object::A4 => Some(Rectangle { long: 0.297, short: 0.21, radius: 0.0 }),
-            Object::Letter => Some(Rectangle { long: 0.2794, short: 0.2159, radius: 0.0 }),
-            Object::Chessboard { .. } | Object::Ruler => None,
+            KnownObject::BankCard => Some(RoundedRectangle { long: 0.0856, short: 0.05398, radius: 0.00318 }),
+            KnownObject::A4 => Some(RoundedRectangle { long: 0.297, short: 0.21, radius: 0.0 }),
+            KnownObject::Letter => Some(RoundedRectangle { long: 0.2794, short: 0.2159, radius: 0.0 }),
+            KnownObject::Chessboard { .. } | KnownObject::Ruler => None,
         }
     }
 
     /// Refuses sizes that no chessboard has.
     pub(crate) fn check(&self) -> Result<(), ScaleError> {
-        let Object::Chessboard { square_um, corners } = self else { return Ok(()) };
+        let KnownObject::Chessboard { square_um, corners } = self else { return Ok(()) };
         if !(1000..=1_000_000).contains(square_um) {
             return Err(ScaleError::Square { square_um: *square_um });
         }

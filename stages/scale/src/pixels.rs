@@ -11,7 +11,7 @@ pub(crate) type Rgb = [f32; 3];
 
 /// A photo reduced by a whole number.
 #[derive(Debug)]
-pub(crate) struct Small {
+pub(crate) struct ReducedPhoto {
     pub(crate) w: usize,
     pub(crate) h: usize,
     /// Pixels of the photo along a side of a pixel.
@@ -19,14 +19,14 @@ pub(crate) struct Small {
     pub(crate) rgb: Vec<Rgb>,
 }
 
-impl Small {
+impl ReducedPhoto {
     /// The photo with `k` x `k` pixels made one; what is left over at the right and below is left
     /// out.
     pub(crate) fn of(photo: &RgbImage, k: usize) -> Self {
         let (w, h) = (photo.width() as usize / k, photo.height() as usize / k);
         let mut rgb = vec![[0.0; 3]; w * h];
         rgb.par_chunks_mut(w.max(1)).enumerate().for_each(|(y, row)| reduce_row(photo, k, y, row));
-        Small { w, h, k, rgb }
+        ReducedPhoto { w, h, k, rgb }
     }
 
     /// A place of the copy as a place of the photo.

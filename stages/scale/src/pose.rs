@@ -27,7 +27,7 @@ pub(crate) struct Pin {
 
 /// What is known of the camera, in pixels.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Camera {
+pub(crate) struct KnownCamera {
     pub(crate) middle: Point2<f64>,
     pub(crate) longer: f64,
     pub(crate) focal: f64,
@@ -42,7 +42,7 @@ pub(crate) struct Camera {
 /// Standard deviation of the principal point, as a share of the longer side.
 const OFF_MIDDLE: f64 = 0.012;
 
-impl Camera {
+impl KnownCamera {
     /// The camera of a photo; the focal length on 35 mm film, if it is known.
     pub(crate) fn of(width: u32, height: u32, focal_35mm: Option<f64>) -> Self {
         let (w, h) = (f64::from(width), f64::from(height));
@@ -52,7 +52,7 @@ impl Camera {
             Some(_) => (0.03, [-0.1, 0.1], MOST_TILT),
             None => (0.15, PHONES.map(|mm| (mm / PHONE).ln()), UNKNOWN_TILT),
         };
-        Camera { middle, longer: w.max(h), focal, doubt, bounds, most_tilt }
+        KnownCamera { middle, longer: w.max(h), focal, doubt, bounds, most_tilt }
     }
 }
 
@@ -71,7 +71,7 @@ const N: usize = 9;
 
 /// A fitted pose.
 #[derive(Debug, Clone)]
-pub(crate) struct Pose {
+pub(crate) struct CameraPose {
     rotation: Rotation3<f64>,
     place: Vector3<f64>,
     /// Logarithm of the focal length over the expected one.
@@ -82,15 +82,15 @@ pub(crate) struct Pose {
     pub(crate) cost: f64,
 }
 
-impl Pose {
+impl CameraPose {
     /// From the object's metres to the photo's pixels.
-    pub(crate) fn homography(&self, camera: &Camera) -> Matrix3<f64> {
+    pub(crate) fn homography(&self, camera: &KnownCamera) -> Matrix3<f64> {
         let r = self.rotation.matrix();
         let columns = Matrix3::from_columns(&[r.column(0).into(), r.column(1).into(), self.place]);
         self.lens(camera) * columns
     }
 
-    fn lens(&self, camera: &Camera) -> Matrix3<f64> {
+    fn lens(&self, camera: &KnownCamera) -> Matrix3<f64> {
         let f = camera.focal * self.focal.exp();
         let c = camera.middle + self.shift * camera.longer;
         Matrix3::new(f, 0.0, c.x, 0.0, f, c.y, 0.0, 0.0, 1.0)
@@ -108,20 +108,26 @@ impl Pose {
     }
 
     /// Whether the focal length is within the camera's bounds.
-    pub(crate) fn plausible(&self, camera: &Camera) -> bool {
+    pub(crate) fn plausible(&self, camera: &KnownCamera) -> bool {
         (camera.bounds[0]..=camera.bounds[1]).contains(&self.focal)
     }
 
     /// Sum of squares of the camera's own terms: how unusual a camera the pose needs.
-    pub(crate) fn unusual(&self, camera: &Camera) -> f64 {
+    pub(crate) fn unusual(&self, camera: &KnownCamera) -> f64 {
         (self.focal / camera.doubt).powi(2) + (self.shift / OFF_MIDDLE).norm_squared()
     }
 
-    fn moved(&self, step: &SVector<f64, N>) -> Pose {
+    fn moved(&self, step: &SVector<f64, N>) -> CameraPose {
         let turn = Rotation3::new(Vector3::new(step[0], step[1], step[2]));
         let place = self.place + Vector3::new(step[3], step[4], step[5]);
         let shift = self.shift + Vector2::new(step[7], step[8]);
-        Pose { rotation: turn * self.rotation, place, focal: self.focal + step[6], shift, cost: self.cost }
+        CameraPose {
+            rotation: turn * self.rotation,
+            place,
+            focal: self.focal + step[6],
+            shift,
+            cost: self.cost,
+        }
     }
 }
 
@@ -165,7 +171,7 @@ fn scaling(points: &[Point2<f64>]) -> Option<Matrix3<f64>> {
 }
 
 /// The pose that fits the pins best, from the homography of metres to pixels.
-pub(crate) fn fit(start: &Matrix3<f64>, pins: &[Pin], camera: &Camera) -> Option<Pose> {
+pub(crate) fn fit(start: &Matrix3<f64>, pins: &[Pin], camera: &KnownCamera) -> Option<CameraPose> {
     let first = split(start, camera)?;
     let other = reversed(&first);
     let poses = [first, other].map(|p| descend(p, pins, camera));
@@ -173,8 +179,8 @@ pub(crate) fn fit(start: &Matrix3<f64>, pins: &[Pin], camera: &Camera) -> Option
 }
 
 /// A homography as a pose, with the expected focal length.
-fn split(h: &Matrix3<f64>, camera: &Camera) -> Option<Pose> {
-    let start = Pose {
+fn split(h: &Matrix3<f64>, camera: &KnownCamera) -> Option<CameraPose> {
+    let start = CameraPose {
         rotation: Rotation3::identity(),
         place: Vector3::zeros(),
         focal: 0.0,
@@ -190,7 +196,7 @@ fn split(h: &Matrix3<f64>, camera: &Camera) -> Option<Pose> {
     let rotation = svd.u? * svd.v_t?;
     let place = m.column(2) / size;
     let good = rotation.iter().chain(place.iter()).all(|v| v.is_finite()) && rotation.determinant() > 0.0;
-    good.then(|| Pose {
+    good.then(|| CameraPose {
         rotation: Rotation3::from_matrix_unchecked(rotation),
         place: place.into_owned(),
         ..start
@@ -198,16 +204,16 @@ fn split(h: &Matrix3<f64>, camera: &Camera) -> Option<Pose> {
 }
 
 /// The pose whose normal is mirrored about the line of sight: it looks almost alike.
-fn reversed(pose: &Pose) -> Pose {
+fn reversed(pose: &CameraPose) -> CameraPose {
     let sight = pose.place.normalize();
     let normal = pose.rotation.matrix().column(2).into_owned();
     let mirrored = 2.0 * normal.dot(&sight) * sight - normal;
     let turn = Rotation3::rotation_between(&normal, &mirrored).unwrap_or_else(Rotation3::identity);
-    Pose { rotation: turn * pose.rotation, ..pose.clone() }
+    CameraPose { rotation: turn * pose.rotation, ..pose.clone() }
 }
 
 /// Differences over their standard errors; `None` where a place is behind the camera.
-fn residuals(pose: &Pose, pins: &[Pin], camera: &Camera) -> Option<DVector<f64>> {
+fn residuals(pose: &CameraPose, pins: &[Pin], camera: &KnownCamera) -> Option<DVector<f64>> {
     let h = pose.homography(camera);
     let mut out = DVector::zeros(pins.len() + 3);
     for (i, pin) in pins.iter().enumerate() {
@@ -223,12 +229,17 @@ fn residuals(pose: &Pose, pins: &[Pin], camera: &Camera) -> Option<DVector<f64>>
 }
 
 /// Steps of the unknowns for differences: radians, metres, logarithm, shares.
-fn small_steps(pose: &Pose) -> [f64; N] {
+fn small_steps(pose: &CameraPose) -> [f64; N] {
     let far = 1e-6 * pose.place.norm().max(1e-3);
     [1e-6, 1e-6, 1e-6, far, far, far, 1e-6, 1e-6, 1e-6]
 }
 
-fn jacobian(pose: &Pose, at: &DVector<f64>, pins: &[Pin], camera: &Camera) -> Option<DMatrix<f64>> {
+fn jacobian(
+    pose: &CameraPose,
+    at: &DVector<f64>,
+    pins: &[Pin],
+    camera: &KnownCamera,
+) -> Option<DMatrix<f64>> {
     let mut j = DMatrix::zeros(at.len(), N);
     for (c, h) in small_steps(pose).into_iter().enumerate() {
         let mut step = SVector::<f64, N>::zeros();
@@ -240,7 +251,7 @@ fn jacobian(pose: &Pose, at: &DVector<f64>, pins: &[Pin], camera: &Camera) -> Op
 }
 
 /// Levenberg and Marquardt from one start.
-fn descend(mut pose: Pose, pins: &[Pin], camera: &Camera) -> Option<Pose> {
+fn descend(mut pose: CameraPose, pins: &[Pin], camera: &KnownCamera) -> Option<CameraPose> {
     let mut at = residuals(&pose, pins, camera)?;
     pose.cost = 0.5 * at.norm_squared();
     let mut damping = 1e-3;
@@ -253,7 +264,7 @@ fn descend(mut pose: Pose, pins: &[Pin], camera: &Camera) -> Option<Pose> {
             let next = pose.moved(&step);
             let there = residuals(&next, pins, camera);
             if let Some(r) = there.filter(|r| 0.5 * r.norm_squared() < pose.cost) {
-                (pose, at) = (Pose { cost: 0.5 * r.norm_squared(), ..next }, r);
+                (pose, at) = (CameraPose { cost: 0.5 * r.norm_squared(), ..next }, r);
                 damping = (damping * 0.2).max(1e-12);
                 break;
             }

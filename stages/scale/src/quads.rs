@@ -7,7 +7,7 @@
 //!
 //! Cost: the meetings of each segment squared; they are bounded (`MEETINGS`).
 
-use crate::ridges::Ridges;
+use crate::ridges::SlopeRidges;
 use crate::segments::Segment;
 use nalgebra::{Point2, Vector2};
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ const ON_RIDGES: f64 = 0.5;
 
 /// Where an end of a segment meets another segment, which leads away from it.
 #[derive(Debug, Clone, Copy)]
-struct Meeting {
+struct SegmentMeeting {
     at: Point2<f64>,
     away: Vector2<f64>,
     /// How far the other segment reaches from there.
@@ -51,7 +51,7 @@ struct Meeting {
 /// Quadrilaterals of sides of at least `least` pixels whose sides are about in the proportion
 /// `aspect` (the long one over the short one, in the picture up to twice as much or half as much),
 /// the best supported first.
-pub(crate) fn quads(segments: &[Segment], ridges: &Ridges, least: f64, aspect: f64) -> Vec<Quad> {
+pub(crate) fn quads(segments: &[Segment], ridges: &SlopeRidges, least: f64, aspect: f64) -> Vec<Quad> {
     let of = |i: usize| around(segments, ridges, i, least, aspect);
     let lists: Vec<Vec<Quad>> = (0..segments.len()).into_par_iter().map(of).collect();
     let mut found: Vec<Quad> = lists.into_iter().flatten().collect();
@@ -60,7 +60,7 @@ pub(crate) fn quads(segments: &[Segment], ridges: &Ridges, least: f64, aspect: f
 }
 
 /// The quadrilaterals of which segment `i` is a side.
-fn around(segments: &[Segment], ridges: &Ridges, i: usize, least: f64, aspect: f64) -> Vec<Quad> {
+fn around(segments: &[Segment], ridges: &SlopeRidges, i: usize, least: f64, aspect: f64) -> Vec<Quad> {
     let [firsts, seconds] = [0, 1].map(|end| meetings(segments, i, end));
     let mut found: Vec<Quad> = Vec::new();
     let mut looked = 0;
@@ -89,7 +89,10 @@ fn around(segments: &[Segment], ridges: &Ridges, i: usize, least: f64, aspect: f
 }
 
 /// Meetings of both ends, the nearest first.
-fn pairs<'a>(firsts: &'a [Meeting], seconds: &'a [Meeting]) -> Vec<(&'a Meeting, &'a Meeting)> {
+fn pairs<'a>(
+    firsts: &'a [SegmentMeeting],
+    seconds: &'a [SegmentMeeting],
+) -> Vec<(&'a SegmentMeeting, &'a SegmentMeeting)> {
     let mut pairs: Vec<_> = firsts.iter().flat_map(|f| seconds.iter().map(move |s| (f, s))).collect();
     pairs.sort_by(|a, b| (a.0.gap + a.1.gap).total_cmp(&(b.0.gap + b.1.gap)));
     pairs
@@ -97,14 +100,14 @@ fn pairs<'a>(firsts: &'a [Meeting], seconds: &'a [Meeting]) -> Vec<(&'a Meeting,
 
 /// Depths, beyond some of the two sides each, at which a fourth side lies on ridges.
 fn fourth(
-    ridges: &Ridges,
-    [first, second]: [&Meeting; 2],
+    ridges: &SlopeRidges,
+    [first, second]: [&SegmentMeeting; 2],
     beyond: [f64; 2],
     [from, to]: [f64; 2],
     least: f64,
     found: &mut Vec<Quad>,
 ) {
-    let end = |m: &Meeting, depth: f64| m.at + m.away * depth;
+    let end = |m: &SegmentMeeting, depth: f64| m.at + m.away * depth;
     let ends = |depth: f64| (end(first, beyond[0] + depth), end(second, beyond[1] + depth));
     let share = |depth: f64| likely(ridges, ends(depth).0, ends(depth).1);
     let steps = (((to - from).max(0.0) / STEP) as usize).min(750);
@@ -130,7 +133,7 @@ fn fourth(
 const STEP: f64 = 2.0;
 
 /// The quadrilateral, turned clockwise, if enough of it is seen and it is not known yet.
-fn quad(ridges: &Ridges, mut corners: [Point2<f64>; 4], least: f64) -> Option<Quad> {
+fn quad(ridges: &SlopeRidges, mut corners: [Point2<f64>; 4], least: f64) -> Option<Quad> {
     if area(&corners) < 0.0 {
         corners.reverse();
     }
@@ -147,7 +150,7 @@ fn quad(ridges: &Ridges, mut corners: [Point2<f64>; 4], least: f64) -> Option<Qu
 }
 
 /// Share of the eight continuations of the sides that lie on ridges.
-fn run_on(ridges: &Ridges, corners: &[Point2<f64>; 4]) -> f64 {
+fn run_on(ridges: &SlopeRidges, corners: &[Point2<f64>; 4]) -> f64 {
     let beyond = |a: Point2<f64>, b: Point2<f64>| {
         let d = b - a;
         seen(ridges, b + d * 0.08, b + d * 0.3, 6)
@@ -157,21 +160,21 @@ fn run_on(ridges: &Ridges, corners: &[Point2<f64>; 4]) -> f64 {
 }
 
 /// Share of a side on ridges, its ends left out.
-fn on_ridges(ridges: &Ridges, a: Point2<f64>, b: Point2<f64>) -> f64 {
+fn on_ridges(ridges: &SlopeRidges, a: Point2<f64>, b: Point2<f64>) -> f64 {
     let d = b - a;
     let count = (d.norm() as usize).clamp(8, 40);
     seen(ridges, a + d * 0.06, b - d * 0.06, count)
 }
 
 /// Share of the places between the ends with a ridge along the line; 0 as soon as it is too low.
-fn likely(ridges: &Ridges, a: Point2<f64>, b: Point2<f64>) -> f64 {
+fn likely(ridges: &SlopeRidges, a: Point2<f64>, b: Point2<f64>) -> f64 {
     let d = b - a;
     let few = seen(ridges, a + d * 0.1, b - d * 0.1, 4);
     if few < ON_RIDGES { 0.0 } else { seen(ridges, a + d * 0.06, b - d * 0.06, 12) }
 }
 
 /// Share of `count` places from `a` to `b` with a ridge along the line within a pixel.
-fn seen(ridges: &Ridges, a: Point2<f64>, b: Point2<f64>, count: usize) -> f64 {
+fn seen(ridges: &SlopeRidges, a: Point2<f64>, b: Point2<f64>, count: usize) -> f64 {
     let d = b - a;
     let Some(along) = d.try_normalize(1e-9) else { return 0.0 };
     let normal = Vector2::new(-along.y, along.x);
@@ -185,17 +188,17 @@ fn seen(ridges: &Ridges, a: Point2<f64>, b: Point2<f64>, count: usize) -> f64 {
 }
 
 /// The nearest meetings of an end of segment `i`, those alike counted once.
-fn meetings(segments: &[Segment], i: usize, end: usize) -> Vec<Meeting> {
+fn meetings(segments: &[Segment], i: usize, end: usize) -> Vec<SegmentMeeting> {
     let mut list = Vec::new();
     for (other, s) in segments.iter().enumerate() {
         if other != i {
             list.extend((0..2).filter_map(|e| meeting(&segments[i], end, s, e)));
         }
     }
-    list.sort_by(|a: &Meeting, b| a.gap.total_cmp(&b.gap));
-    let mut kept: Vec<Meeting> = Vec::new();
+    list.sort_by(|a: &SegmentMeeting, b| a.gap.total_cmp(&b.gap));
+    let mut kept: Vec<SegmentMeeting> = Vec::new();
     for m in list {
-        let same = |k: &Meeting| (k.at - m.at).norm() < 1.0 && k.away.dot(&m.away) > 0.9995;
+        let same = |k: &SegmentMeeting| (k.at - m.at).norm() < 1.0 && k.away.dot(&m.away) > 0.9995;
         if !kept.iter().any(same) {
             kept.push(m);
         }
@@ -207,7 +210,7 @@ fn meetings(segments: &[Segment], i: usize, end: usize) -> Vec<Meeting> {
 }
 
 /// The crossing of two segments' lines, if it is near those ends and the angle is large enough.
-fn meeting(one: &Segment, end: usize, two: &Segment, e: usize) -> Option<Meeting> {
+fn meeting(one: &Segment, end: usize, two: &Segment, e: usize) -> Option<SegmentMeeting> {
     let (p, q) = (if end == 0 { one.a } else { one.b }, if e == 0 { two.a } else { two.b });
     let (l1, l2) = (one.length(), two.length());
     let reach = 0.9 * (l1 + l2) + 8.0;
@@ -224,7 +227,7 @@ fn meeting(one: &Segment, end: usize, two: &Segment, e: usize) -> Option<Meeting
     let outward = |v: Vector2<f64>, end: usize| if end == 0 { -v } else { v };
     let gaps = [gap(at, p, outward(u, end), l1)?, gap(at, q, outward(v, e), l2)?];
     let reach = (if e == 0 { two.b } else { two.a } - at).norm();
-    Some(Meeting { at, away: -outward(v, e), reach, gap: gaps[0] + gaps[1] - 0.3 * l2.min(l1) })
+    Some(SegmentMeeting { at, away: -outward(v, e), reach, gap: gaps[0] + gaps[1] - 0.3 * l2.min(l1) })
 }
 
 /// How far a crossing lies from an end: outside of the segment by nine tenths of it, inside by a

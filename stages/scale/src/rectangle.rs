@@ -6,16 +6,16 @@
 //! any plausible camera, where the sides run on beyond the corners (boards, tiles, checks), or
 //! where the corners are round or sharp against the object's kind (`judge`).
 
-use crate::found::{Found, Kind, density, inverse, middle};
+use crate::found::{Found, ScaleKind, density, inverse, middle};
 use crate::judge::{self, Judged};
-use crate::object::Rectangle;
-use crate::options::Options;
-use crate::pixels::Small;
-use crate::pose::{Camera, MOST_TILT};
+use crate::object::RoundedRectangle;
+use crate::options::ScaleOptions;
+use crate::pixels::ReducedPhoto;
+use crate::pose::{KnownCamera, MOST_TILT};
 use crate::quads::{Quad, quads};
-use crate::ridges::Ridges;
+use crate::ridges::SlopeRidges;
 use crate::segments::segments;
-use crate::{Object, ScaleError};
+use crate::{KnownObject, ScaleError};
 use image::RgbImage;
 use nalgebra::Point2;
 
@@ -33,11 +33,11 @@ const EQUAL: f64 = 0.12;
 /// Finds a card or sheet.
 pub(crate) fn find(
     photo: &RgbImage,
-    object: Object,
-    shape: &Rectangle,
-    options: &Options,
+    object: KnownObject,
+    shape: &RoundedRectangle,
+    options: &ScaleOptions,
 ) -> Result<Found, ScaleError> {
-    let camera = Camera::of(photo.width(), photo.height(), options.focal_35mm);
+    let camera = KnownCamera::of(photo.width(), photo.height(), options.focal_35mm);
     let mut judged: Vec<Judged> = Vec::new();
     for k in reductions(photo) {
         for candidate in candidates(photo, k, shape, &camera) {
@@ -61,9 +61,9 @@ fn reductions(photo: &RgbImage) -> Vec<usize> {
 }
 
 /// A quadrilateral in photo pixels whose aspect may be the object's; its first side is a long one.
-fn candidates(photo: &RgbImage, k: usize, shape: &Rectangle, camera: &Camera) -> Vec<Quad> {
-    let small = Small::of(photo, k);
-    let ridges = Ridges::of(&small, LEAST_SLOPE);
+fn candidates(photo: &RgbImage, k: usize, shape: &RoundedRectangle, camera: &KnownCamera) -> Vec<Quad> {
+    let small = ReducedPhoto::of(photo, k);
+    let ridges = SlopeRidges::of(&small, LEAST_SLOPE);
     let least = (0.5 * LEAST_SIDE / k as f64).max(6.0);
     let mut kept: Vec<Quad> = Vec::new();
     let segments = segments(&ridges, least);
@@ -94,7 +94,7 @@ fn same(a: &Quad, b: &Quad, reach: f64) -> bool {
 fn alone<'a>(
     best: &Judged,
     judged: impl Iterator<Item = &'a Judged>,
-    object: Object,
+    object: KnownObject,
 ) -> Result<(), ScaleError> {
     let mut places = vec![middle(&best.corners)];
     for other in judged.filter(|j| j.merit > best.merit - EQUAL) {
@@ -111,7 +111,12 @@ fn alone<'a>(
 }
 
 /// Refuses what is cut, small or seen too flat.
-fn checked(photo: &RgbImage, best: &Judged, object: Object, camera: &Camera) -> Result<(), ScaleError> {
+fn checked(
+    photo: &RgbImage,
+    best: &Judged,
+    object: KnownObject,
+    camera: &KnownCamera,
+) -> Result<(), ScaleError> {
     let (object, place) = (object.name(), middle(&best.corners));
     if !best.corners.iter().all(|p| in_frame(photo, p)) {
         return Err(ScaleError::Cut { object, place });
@@ -131,13 +136,13 @@ fn in_frame(photo: &RgbImage, p: &Point2<f64>) -> bool {
     p.x >= -0.5 && p.y >= -0.5 && p.x <= w - 0.5 && p.y <= h - 0.5
 }
 
-fn found(best: &Judged, object: Object, camera: &Camera) -> Result<Found, ScaleError> {
+fn found(best: &Judged, object: KnownObject, camera: &KnownCamera) -> Result<Found, ScaleError> {
     let to_pixels = best.pose.homography(camera);
     let homography = inverse(&to_pixels).ok_or(ScaleError::NotFinite)?;
     let px_per_metre = density(&to_pixels, Point2::origin()).ok_or(ScaleError::NotFinite)?;
     Ok(Found {
         object,
-        kind: Kind::Plane,
+        kind: ScaleKind::Plane,
         corners: best.corners,
         marks: Vec::new(),
         homography,

@@ -64,7 +64,7 @@ pub fn rectify(photo: &RgbImage, found: &Found, options: &RectifyOptions) -> Res
     if let Some(px_per_metre) = options.px_per_metre.filter(|p| !(10.0..=100_000.0).contains(p)) {
         return Err(ScaleError::Resolution { px_per_metre });
     }
-    let frame = Frame::of(photo, &found.homography).ok_or(ScaleError::NotFinite)?;
+    let frame = GroundFrame::of(photo, &found.homography).ok_or(ScaleError::NotFinite)?;
     let size = frame.high - frame.low;
     let fits = (MOST_SIDE / size.x.max(size.y)).min((MOST_PIXELS / (size.x * size.y)).sqrt());
     let px_per_metre = options.px_per_metre.unwrap_or(f64::INFINITY).min(frame.densest).min(0.999 * fits);
@@ -79,7 +79,7 @@ pub fn rectify(photo: &RgbImage, found: &Found, options: &RectifyOptions) -> Res
 
 /// The part of the ground that the photo shows.
 #[derive(Debug)]
-struct Frame {
+struct GroundFrame {
     /// Photo pixels to metres, turned so that the photo's x direction is x.
     to_ground: Matrix3<f64>,
     to_pixels: Matrix3<f64>,
@@ -89,7 +89,7 @@ struct Frame {
     densest: f64,
 }
 
-impl Frame {
+impl GroundFrame {
     fn of(photo: &RgbImage, homography: &Matrix3<f64>) -> Option<Self> {
         if !homography.iter().all(|v| v.is_finite()) {
             return None;
@@ -108,7 +108,7 @@ impl Frame {
         let size = high - low;
         let good =
             size.x > 0.0 && size.y > 0.0 && size.x.is_finite() && size.y.is_finite() && densest.is_finite();
-        good.then_some(Frame { to_ground, to_pixels, low, high, densest })
+        good.then_some(GroundFrame { to_ground, to_pixels, low, high, densest })
     }
 }
 
@@ -132,14 +132,14 @@ fn turned(photo: &RgbImage, h: &Matrix3<f64>) -> Option<Matrix3<f64>> {
 }
 
 /// Metres to the picture's pixels.
-fn picture(frame: &Frame, scale: f64) -> Matrix3<f64> {
+fn picture(frame: &GroundFrame, scale: f64) -> Matrix3<f64> {
     let shift = frame.low.coords * -scale - Vector2::new(0.5, 0.5);
     Matrix3::new(scale, 0.0, shift.x, 0.0, scale, shift.y, 0.0, 0.0, 1.0)
 }
 
 fn painted(
     photo: &RgbImage,
-    frame: &Frame,
+    frame: &GroundFrame,
     back: &Matrix3<f64>,
     size: (u32, u32),
     scale: f64,

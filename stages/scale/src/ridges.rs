@@ -7,7 +7,7 @@
 //!
 //! Cost: about 40 ns a pixel.
 
-use crate::pixels::{Rgb, Small};
+use crate::pixels::{ReducedPhoto, Rgb};
 use nalgebra::Point2;
 use rayon::prelude::*;
 
@@ -22,16 +22,16 @@ pub(crate) struct Slope {
 
 /// Slopes of all pixels, and which of them are ridges.
 #[derive(Debug)]
-pub(crate) struct Ridges {
+pub(crate) struct SlopeRidges {
     pub(crate) w: usize,
     pub(crate) h: usize,
     pub(crate) slopes: Vec<Slope>,
     pub(crate) on: Vec<bool>,
 }
 
-impl Ridges {
+impl SlopeRidges {
     /// Ridges of at least `least` grey levels a pixel.
-    pub(crate) fn of(small: &Small, least: f32) -> Self {
+    pub(crate) fn of(small: &ReducedPhoto, least: f32) -> Self {
         let (w, h) = (small.w, small.h);
         let mut slopes = vec![Slope::default(); w * h];
         slopes.par_chunks_mut(w.max(1)).enumerate().for_each(|(y, row)| {
@@ -45,7 +45,7 @@ impl Ridges {
                 (2..w.saturating_sub(2)).for_each(|x| row[x] = is_ridge(&slopes, w, y * w + x, least));
             }
         });
-        Ridges { w, h, slopes, on }
+        SlopeRidges { w, h, slopes, on }
     }
 
     /// Whether the nearest pixel is on a ridge whose direction across, as `Slope::twice`, is like
@@ -61,7 +61,7 @@ impl Ridges {
 }
 
 /// Slope at an inner pixel, by differences smoothed across (Scharr, 2000).
-fn slope(small: &Small, x: usize, y: usize) -> Slope {
+fn slope(small: &ReducedPhoto, x: usize, y: usize) -> Slope {
     let (w, i) = (small.w, y * small.w + x);
     let at = |j: usize| -> &Rgb { &small.rgb[j] };
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);

@@ -7,7 +7,7 @@
 //! Cost: linear in the ridge pixels; the joining is quadratic in the segments, of which at most
 //! `MOST` are kept.
 
-use crate::ridges::Ridges;
+use crate::ridges::SlopeRidges;
 use nalgebra::{Point2, Vector2};
 
 /// A straight segment at the reduced size.
@@ -43,7 +43,7 @@ const ALIKE: f32 = 0.707;
 const STRAIGHT: f64 = 0.75;
 
 /// Segments of at least `least` pixels, the longest first.
-pub(crate) fn segments(ridges: &Ridges, least: f64) -> Vec<Segment> {
+pub(crate) fn segments(ridges: &SlopeRidges, least: f64) -> Vec<Segment> {
     let mut taken = vec![false; ridges.on.len()];
     let mut found = Vec::new();
     let mut region = Vec::new();
@@ -67,7 +67,7 @@ fn keep_longest(found: &mut Vec<Segment>) {
 
 /// Ridge pixels, the steepest first; in steps of size, so that the order is that of the rows within
 /// one.
-fn seeds(ridges: &Ridges) -> Vec<usize> {
+fn seeds(ridges: &SlopeRidges) -> Vec<usize> {
     let mut bins: Vec<Vec<usize>> = vec![Vec::new(); 64];
     for i in (0..ridges.on.len()).filter(|i| ridges.on[*i]) {
         bins[(ridges.slopes[i].size as usize).min(63)].push(i);
@@ -76,7 +76,7 @@ fn seeds(ridges: &Ridges) -> Vec<usize> {
 }
 
 /// The ridge pixels near `start` that have its direction and lie on the line of those before.
-fn grow(ridges: &Ridges, taken: &mut [bool], start: usize, region: &mut Vec<usize>) {
+fn grow(ridges: &SlopeRidges, taken: &mut [bool], start: usize, region: &mut Vec<usize>) {
     region.clear();
     region.push(start);
     taken[start] = true;
@@ -148,7 +148,7 @@ fn alike(sum: [f32; 2], one: [f32; 2]) -> bool {
 }
 
 /// The region as a segment, or its halves where it bends.
-fn split(ridges: &Ridges, region: &mut [usize], least: f64, out: &mut Vec<Segment>, depth: usize) {
+fn split(ridges: &SlopeRidges, region: &mut [usize], least: f64, out: &mut Vec<Segment>, depth: usize) {
     if (region.len() as f64) < 0.6 * least {
         return;
     }
@@ -173,7 +173,7 @@ fn split(ridges: &Ridges, region: &mut [usize], least: f64, out: &mut Vec<Segmen
 }
 
 /// Middle and main direction of the pixels, weighted by slope.
-fn axis(ridges: &Ridges, region: &[usize]) -> Option<(Vector2<f64>, Vector2<f64>)> {
+fn axis(ridges: &SlopeRidges, region: &[usize]) -> Option<(Vector2<f64>, Vector2<f64>)> {
     let (mut total, mut first) = (0.0, Vector2::zeros());
     let place = |i: usize| Vector2::new((i % ridges.w) as f64, (i / ridges.w) as f64);
     for i in region {

@@ -13,7 +13,7 @@ use nalgebra::{Point2, Vector2};
 
 /// A measured side.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Side {
+pub(crate) struct MeasuredSide {
     /// Where the line passes the start and the end of the side.
     pub(crate) a: Point2<f64>,
     pub(crate) b: Point2<f64>,
@@ -29,7 +29,7 @@ pub(crate) struct Side {
 
 /// How a side is looked at.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Look {
+pub(crate) struct SideSampling {
     /// Distance of samples across the side, pixels.
     pub(crate) step: f64,
     /// Samples to each side of it.
@@ -56,7 +56,12 @@ const NOISE: f64 = 0.9;
 const PEAKS: usize = 3;
 
 /// The line near the side from `a` to `b`; `None` where no line is seen.
-pub(crate) fn side(photo: &RgbImage, a: Point2<f64>, b: Point2<f64>, look: &Look) -> Option<Side> {
+pub(crate) fn side(
+    photo: &RgbImage,
+    a: Point2<f64>,
+    b: Point2<f64>,
+    look: &SideSampling,
+) -> Option<MeasuredSide> {
     let length = (b - a).norm();
     let count = ((length / look.step) as usize).clamp(6, look.most);
     let normal = across(a, b)?;
@@ -84,7 +89,7 @@ fn profile(
     at: Point2<f64>,
     normal: Vector2<f64>,
     along: Vector2<f64>,
-    look: &Look,
+    look: &SideSampling,
     mut found: impl FnMut(f64, f64),
 ) {
     let slopes = slopes(photo, at, normal, along, look);
@@ -109,7 +114,7 @@ fn slopes(
     at: Point2<f64>,
     normal: Vector2<f64>,
     along: Vector2<f64>,
-    look: &Look,
+    look: &SideSampling,
 ) -> Vec<f64> {
     let half = look.reach as isize + 4;
     let line: Vec<Rgb> = (-half..=half)
@@ -130,7 +135,7 @@ fn slopes(
 }
 
 /// End offsets of the line that most peaks are near, steps.
-fn vote(peaks: &[Peak], look: &Look, count: usize) -> Option<(f64, f64)> {
+fn vote(peaks: &[Peak], look: &SideSampling, count: usize) -> Option<(f64, f64)> {
     let reach = 2 * look.reach as isize;
     // A quarter of the profiles tells the line; the fit uses all of them.
     let every = (count / 32).max(1);
@@ -176,7 +181,7 @@ fn voice(peak: &Peak, p: f64, q: f64, strong: f64) -> f64 {
 
 /// A fitted line in steps.
 #[derive(Debug, Clone, Copy)]
-struct Fit {
+struct LineFit {
     p: f64,
     q: f64,
     coverage: f64,
@@ -185,17 +190,17 @@ struct Fit {
     slope: f64,
 }
 
-impl Fit {
+impl LineFit {
     /// The side whose ends the offsets are from; `step` in pixels.
-    fn side(&self, a: Point2<f64>, b: Point2<f64>, normal: Vector2<f64>, step: f64) -> Side {
+    fn side(&self, a: Point2<f64>, b: Point2<f64>, normal: Vector2<f64>, step: f64) -> MeasuredSide {
         let (coverage, slope) = (self.coverage, self.slope);
         let (a, b) = (a + normal * (self.p * step), b + normal * (self.q * step));
-        Side { a, b, coverage, slope, spread: self.spread * step, error: self.error * step }
+        MeasuredSide { a, b, coverage, slope, spread: self.spread * step, error: self.error * step }
     }
 }
 
 /// Least squares with Tukey's weights from a start.
-fn fit(peaks: &[Peak], start: (f64, f64), count: usize, look: &Look) -> Option<Fit> {
+fn fit(peaks: &[Peak], start: (f64, f64), count: usize, look: &SideSampling) -> Option<LineFit> {
     let (mut p, mut q) = start;
     let mut scale = 0.5;
     let mut near = Vec::new();
@@ -213,7 +218,7 @@ fn fit(peaks: &[Peak], start: (f64, f64), count: usize, look: &Look) -> Option<F
     let slope = median(on.iter().map(|k| k.slope).collect())?;
     let reach = look.reach as f64 + 1.0;
     let kept = p.abs() <= reach && q.abs() <= reach;
-    kept.then_some(Fit { p, q, coverage: on.len() as f64 / count as f64, spread, error, slope })
+    kept.then_some(LineFit { p, q, coverage: on.len() as f64 / count as f64, spread, error, slope })
 }
 
 /// Of each profile the peak that is nearest to the line.
@@ -264,7 +269,7 @@ pub(crate) fn continues(
     photo: &RgbImage,
     from: Point2<f64>,
     to: Point2<f64>,
-    look: &Look,
+    look: &SideSampling,
     slope: f64,
 ) -> f64 {
     let Some(normal) = across(from, to) else { return 0.0 };

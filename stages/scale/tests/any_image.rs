@@ -3,7 +3,7 @@
 
 use image::{Rgb, RgbImage};
 use proptest::prelude::*;
-use toile_scale::{Object, RectifyOptions, draw, find, rectify};
+use toile_scale::{KnownObject, RectifyOptions, draw, find, rectify};
 
 /// Noise, or a few boxes of even colour on a ground, from bytes.
 fn image(w: u32, h: u32, bytes: &[u8], boxes: bool) -> RgbImage {
@@ -23,15 +23,15 @@ fn image(w: u32, h: u32, bytes: &[u8], boxes: bool) -> RgbImage {
     picture
 }
 
-fn objects() -> impl Strategy<Value = Object> {
+fn objects() -> impl Strategy<Value = KnownObject> {
     let corners = prop::option::of((3u32..10, 3u32..10));
     prop_oneof![
-        Just(Object::BankCard),
-        Just(Object::A4),
-        Just(Object::Letter),
-        Just(Object::Ruler),
+        Just(KnownObject::BankCard),
+        Just(KnownObject::A4),
+        Just(KnownObject::Letter),
+        Just(KnownObject::Ruler),
         (1000u32..100_000, corners)
-            .prop_map(|(square_um, corners)| Object::Chessboard { square_um, corners }),
+            .prop_map(|(square_um, corners)| KnownObject::Chessboard { square_um, corners }),
     ]
 }
 

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use image::{Rgb, RgbImage};
-use toile_scale::{Object, Options, RectifyOptions, ScaleError, find, find_with, rectify};
+use toile_scale::{KnownObject, RectifyOptions, ScaleError, ScaleOptions, find, find_with, rectify};
 
 fn plain() -> RgbImage {
     RgbImage::from_pixel(200, 150, Rgb([120, 110, 100]))
@@ -20,22 +20,22 @@ fn sheet() -> RgbImage {
 fn an_empty_ground_holds_no_card() {
     let text = "no bank card was found; lay it flat beside the garment, whole in the frame, on a ground of another \
                 colour, and photograph from above";
-    assert_eq!(find(&plain(), Object::BankCard).unwrap_err().to_string(), text);
+    assert_eq!(find(&plain(), KnownObject::BankCard).unwrap_err().to_string(), text);
 }
 
 #[test]
 fn a_photo_of_few_pixels_is_refused() {
-    let error = find(&RgbImage::new(31, 200), Object::A4).unwrap_err();
+    let error = find(&RgbImage::new(31, 200), KnownObject::A4).unwrap_err();
     let text = "the photo is 31 x 200 px; give one of 32 to 30000 px a side and at most 200 megapixels";
     assert_eq!(error.to_string(), text);
 }
 
 #[test]
 fn chessboards_are_checked() {
-    let square = Object::Chessboard { square_um: 10, corners: None };
+    let square = KnownObject::Chessboard { square_um: 10, corners: None };
     let text = "a chessboard's square of 10 um is out of range; give 1000 to 1000000 um";
     assert_eq!(find(&plain(), square).unwrap_err().to_string(), text);
-    let counts = Object::Chessboard { square_um: 25_000, corners: Some((2, 9)) };
+    let counts = KnownObject::Chessboard { square_um: 25_000, corners: Some((2, 9)) };
     let text = "a chessboard of 2 x 9 inner corners is out of range; give 3 to 60 each";
     assert_eq!(find(&plain(), counts).unwrap_err().to_string(), text);
 }
@@ -43,14 +43,14 @@ fn chessboards_are_checked() {
 #[test]
 fn focal_lengths_and_resolutions_are_checked() {
     for focal in [0.0, f64::NAN, 1000.0] {
-        let options = Options { focal_35mm: Some(focal) };
-        let error = find_with(&plain(), Object::A4, &options).unwrap_err();
+        let options = ScaleOptions { focal_35mm: Some(focal) };
+        let error = find_with(&plain(), KnownObject::A4, &options).unwrap_err();
         let text =
             format!("a focal length of {focal} mm (35 mm film) is out of range; give 8 to 400 mm, or none");
         assert_eq!(error.to_string(), text);
     }
     let photo = sheet();
-    let found = find(&photo, Object::A4).unwrap();
+    let found = find(&photo, KnownObject::A4).unwrap();
     let options = RectifyOptions { px_per_metre: Some(1.0), ..RectifyOptions::default() };
     let text = "a resolution of 1 px per metre is out of range; give 10 to 100000, or none";
     assert_eq!(rectify(&photo, &found, &options).unwrap_err().to_string(), text);
@@ -59,7 +59,7 @@ fn focal_lengths_and_resolutions_are_checked() {
 #[test]
 fn a_homography_that_is_not_finite_is_refused() {
     let photo = sheet();
-    let mut found = find(&photo, Object::A4).unwrap();
+    let mut found = find(&photo, KnownObject::A4).unwrap();
     found.homography[(0, 1)] = f64::NAN;
     let error = rectify(&photo, &found, &RectifyOptions::default()).unwrap_err();
     assert_eq!(error.to_string(), "the homography has no finite inverse; take the one that `find` gave");
@@ -72,7 +72,7 @@ fn two_sheets_are_one_too_many() {
         photo.put_pixel(x, y, Rgb([235, 235, 230]));
         photo.put_pixel(x + 450, y, Rgb([235, 235, 230]));
     }
-    let error = find(&photo, Object::A4).unwrap_err();
+    let error = find(&photo, KnownObject::A4).unwrap_err();
     assert!(matches!(&error, ScaleError::Several { places, .. } if places.len() == 2), "{error}");
 }
 

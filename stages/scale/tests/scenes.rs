@@ -16,7 +16,7 @@ use image::RgbImage;
 use nalgebra::Point2;
 use random::Random;
 use scene::{Scene, camera, through};
-use toile_scale::{Kind, Object, RectifyOptions, ScaleError, draw, find, rectify};
+use toile_scale::{KnownObject, RectifyOptions, ScaleError, ScaleKind, draw, find, rectify};
 
 /// A thing on a plain ground without a garment, tilted by some degrees about an oblique axis.
 fn scene(size: (u32, u32), density: f64, degrees: f64, thing: thing::Thing, at: [f64; 3]) -> Scene {
@@ -55,8 +55,8 @@ fn error(s: &Scene, found: &toile_scale::Found) -> f64 {
 fn a_sheet_gives_the_plane_of_a_tilted_ground() {
     let sheet = objects::a4(&mut Random::new(2), [90.0; 3]);
     let s = scene((1000, 750), 1000.0, 20.0, sheet, [0.1, -0.05, 0.7]);
-    let found = find(&s.photo(), Object::A4).unwrap();
-    assert_eq!(found.kind, Kind::Plane);
+    let found = find(&s.photo(), KnownObject::A4).unwrap();
+    assert_eq!(found.kind, ScaleKind::Plane);
     assert!(error(&s, &found) < 0.004, "{}", error(&s, &found));
     let centre = through(&s.to_pixels, 0.1, -0.05);
     assert!(found.ground(centre).unwrap().coords.norm() < 0.001);
@@ -66,7 +66,7 @@ fn a_sheet_gives_the_plane_of_a_tilted_ground() {
 fn a_card_of_150_pixels_gives_lengths_beside_it() {
     let card = objects::card(&mut Random::new(5), [95.0, 80.0, 60.0]);
     let s = scene((1000, 750), 1750.0, 12.0, card, [0.05, 0.05, 0.4]);
-    let found = find(&s.photo(), Object::BankCard).unwrap();
+    let found = find(&s.photo(), KnownObject::BankCard).unwrap();
     assert!(error(&s, &found) < 0.015, "{}", error(&s, &found));
 }
 
@@ -74,19 +74,19 @@ fn a_card_of_150_pixels_gives_lengths_beside_it() {
 fn a_business_card_is_no_bank_card() {
     let card = objects::decoy(&mut Random::new(5), [95.0, 80.0, 60.0], 1);
     let s = scene((1000, 750), 1750.0, 12.0, card, [0.05, 0.05, 0.4]);
-    assert_eq!(find(&s.photo(), Object::BankCard), Err(ScaleError::NoneFound { object: "bank card" }));
+    assert_eq!(find(&s.photo(), KnownObject::BankCard), Err(ScaleError::NoneFound { object: "bank card" }));
 }
 
 #[test]
 fn a_chessboard_is_counted() {
     let board = objects::chess(&mut Random::new(3), [95.0, 80.0, 60.0]);
     let s = scene((1000, 750), 1000.0, 25.0, board, [0.0, 0.0, 0.5]);
-    let found = find(&s.photo(), Object::Chessboard { square_um: 25_000, corners: None }).unwrap();
+    let found = find(&s.photo(), KnownObject::Chessboard { square_um: 25_000, corners: None }).unwrap();
     assert_eq!(found.marks.len(), 9 * 6);
     assert!(error(&s, &found) < 0.004, "{}", error(&s, &found));
-    let stated = Object::Chessboard { square_um: 25_000, corners: Some((6, 9)) };
+    let stated = KnownObject::Chessboard { square_um: 25_000, corners: Some((6, 9)) };
     assert_eq!(find(&s.photo(), stated).unwrap().homography, found.homography);
-    let other = Object::Chessboard { square_um: 25_000, corners: Some((7, 9)) };
+    let other = KnownObject::Chessboard { square_um: 25_000, corners: Some((7, 9)) };
     assert_eq!(find(&s.photo(), other), Err(ScaleError::NoneFound { object: "chessboard" }));
 }
 
@@ -94,11 +94,11 @@ fn a_chessboard_is_counted() {
 fn a_ruler_gives_a_scale_and_refuses_a_tilt() {
     let ruler = objects::ruler(&mut Random::new(4), [95.0, 80.0, 60.0], true, 0.2);
     let s = scene((1000, 750), 4000.0, 0.0, ruler.clone(), [0.0, 0.0, 0.3]);
-    let found = find(&s.photo(), Object::Ruler).unwrap();
-    assert_eq!((found.kind, found.tilt), (Kind::Line, None));
+    let found = find(&s.photo(), KnownObject::Ruler).unwrap();
+    assert_eq!((found.kind, found.tilt), (ScaleKind::Line, None));
     assert!((found.px_per_metre / 4000.0 - 1.0).abs() < 0.005, "{}", found.px_per_metre);
     let tilted = scene((1000, 750), 4000.0, 25.0, ruler, [0.0, 0.0, -1.2]);
-    assert!(matches!(find(&tilted.photo(), Object::Ruler), Err(ScaleError::RulerTilted { .. })));
+    assert!(matches!(find(&tilted.photo(), KnownObject::Ruler), Err(ScaleError::RulerTilted { .. })));
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn the_rectified_photo_shows_the_object_at_its_size() {
     let sheet = objects::a4(&mut Random::new(2), [90.0; 3]);
     let s = scene((1000, 750), 1000.0, 25.0, sheet, [0.1, -0.05, 0.7]);
     let photo = s.photo();
-    let found = find(&photo, Object::A4).unwrap();
+    let found = find(&photo, KnownObject::A4).unwrap();
     let options = RectifyOptions { px_per_metre: Some(800.0), ..RectifyOptions::default() };
     let above = rectify(&photo, &found, &options).unwrap();
     assert_eq!(above.px_per_metre, 800.0);
@@ -127,7 +127,7 @@ fn the_rectified_photo_shows_the_object_at_its_size() {
 fn the_outline_is_drawn() {
     let sheet = objects::a4(&mut Random::new(2), [90.0; 3]);
     let photo = scene((1000, 750), 1000.0, 0.0, sheet, [0.1, -0.05, 0.7]).photo();
-    let found = find(&photo, Object::A4).unwrap();
+    let found = find(&photo, KnownObject::A4).unwrap();
     let changed = |p: &RgbImage| p.pixels().zip(photo.pixels()).filter(|(a, b)| a != b).count();
     assert!(changed(&draw(&photo, &found)) > 500);
 }
@@ -139,7 +139,7 @@ fn one_thread_and_three_give_the_same_bits() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let found = find(&photo, Object::BankCard).unwrap();
+            let found = find(&photo, KnownObject::BankCard).unwrap();
             let above = rectify(&photo, &found, &RectifyOptions::default()).unwrap();
             (found, above)
         })

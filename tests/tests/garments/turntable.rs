@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use toile_core::artifact::OutputFiles;
 use toile_core::testkit::{Trial, cases, dress, folder};
-use toile_stages::render::{Orbit, Scene};
+use toile_stages::render::{ModelScene, Orbit};
 
 const BROWSERS: [&str; 4] = ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"];
 
@@ -146,7 +146,7 @@ fn between_views_the_page_shows_what_would_have_been_rendered() {
     let (_keep, dir) = folder().unwrap();
     let model = dress::model();
     let orbit = Orbit::around(&model, 360, 480, &[-5.0, 15.0, 40.0]);
-    let scene = Scene::draft(&model);
+    let scene = ModelScene::draft(&model);
     let cut_out =
         |a: f64, e: f64| -> RgbaImage { scene.cut_outs(&orbit, a.to_radians(), &[e.to_radians()]).remove(0) };
     let pages = ["Depth", "Flow"].map(|way| {

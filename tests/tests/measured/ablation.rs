@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use toile_core::{Cancel, StageError};
 use toile_tests::{Answer, napkin, toile};
-use toile_trade::ablate::{Ablation, Options, Progress, Row, Step, ablate, csv};
+use toile_trade::ablate::{Ablation, AblationOptions, AblationProgress, DecisionRow, RunStep, ablate, csv};
 use toile_trade::knobs::source::Source;
 use toile_trade::measure::Bench;
 
@@ -48,7 +48,7 @@ fn record(dir: &Path) -> PathBuf {
 }
 
 /// Ablates in this process; gives the runs that were begun as well, and the notes.
-fn session(dir: &Path, asked: Asked) -> (Result<Ablation, StageError>, Vec<Step>, Vec<String>) {
+fn session(dir: &Path, asked: Asked) -> (Result<Ablation, StageError>, Vec<RunStep>, Vec<String>) {
     let registry = toile::registry();
     let file = dir.join("napkin.ron");
     let source = Source {
@@ -62,11 +62,11 @@ fn session(dir: &Path, asked: Asked) -> (Result<Ablation, StageError>, Vec<Step>
     let cancel = Cancel::new();
     let bench = Bench { until: None, cancel: cancel.clone(), listener: Arc::new(()), apart: None };
     let (out, budget) = (dir.join("out"), asked.budget);
-    let options = Options { out, repeats: asked.rounds, budget, limit: None, bench };
+    let options = AblationOptions { out, repeats: asked.rounds, budget, limit: None, bench };
     let (mut steps, mut notes) = (Vec::new(), Vec::new());
     let result = ablate(&source, &source.load(&[]).unwrap(), &options, &mut |progress| match progress {
-        Progress::Note(note) => notes.push(note),
-        Progress::Run(step) => {
+        AblationProgress::Note(note) => notes.push(note),
+        AblationProgress::Run(step) => {
             steps.push(step);
             if steps.len() == asked.stop_at {
                 cancel.cancel();
@@ -82,7 +82,7 @@ fn whole(dir: &Path) -> Ablation {
 
 /// An ablation without what depends on times and on the machine's load.
 fn timeless(a: &Ablation) -> impl PartialEq + std::fmt::Debug + use<> {
-    let row = |r: &Row| {
+    let row = |r: &DecisionRow| {
         let runs = (r.cpu_s.len(), r.saved_s.len());
         (r.decided.clone(), r.turned.clone(), runs, r.change, r.failed.clone())
     };

@@ -1,9 +1,9 @@
 //! The runs of an ablation that are done, as `ablation.jsonl` keeps them: a line a run.
 
-use super::Options;
-use super::record::{Change, SCHEME};
+use super::AblationOptions;
+use super::record::{GarmentChange, SCHEME};
 use crate::digest::digest;
-use crate::journal::{Journal, Kind};
+use crate::journal::{Journal, JournalKind};
 use crate::measure::Ran;
 use crate::record::{Machine, today};
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use toile_core::StageError;
 use toile_pipeline::Pipeline;
 
 /// The record's kind.
-const KIND: Kind = Kind {
+const KIND: JournalKind = JournalKind {
     name: "ablation",
     scheme: SCHEME,
     changed: "the pipeline, --until, the machine or its number of threads has changed",
@@ -35,7 +35,7 @@ pub(super) enum Done {
 pub(super) enum Came {
     /// It ran: processor time, what the decision saved against the run beside it, and, once a
     /// decision, what it changed.
-    Ran { cpu_s: f64, saved_s: f64, change: Option<Change> },
+    Ran { cpu_s: f64, saved_s: f64, change: Option<GarmentChange> },
     /// A stage refused or failed.
     Failed { message: String },
     /// It was stopped after so many seconds.
@@ -80,13 +80,13 @@ impl Last {
 }
 
 /// The record with its runs.
-pub(super) struct Kept(Journal<Last, Done>);
+pub(super) struct KeptRecord(Journal<Last, Done>);
 
-impl Kept {
+impl KeptRecord {
     /// The record of an earlier session of the same pipeline on the same machine, else a new one.
     ///
     /// Runs that were stopped at a shorter limit than there is now are forgotten.
-    pub(super) fn open(pipeline: &Pipeline, options: &Options, tell: &mut dyn FnMut(String)) -> Self {
+    pub(super) fn open(pipeline: &Pipeline, options: &AblationOptions, tell: &mut dyn FnMut(String)) -> Self {
         let (Machine { system, cores, threads, .. }, until) =
             (Machine::here(), options.bench.until.as_deref());
         let place = format!("{system}, {cores} cores, {threads} threads");
@@ -100,7 +100,7 @@ impl Kept {
         if !journal.lines.is_empty() {
             tell(format!("goes on from {} runs in {}", journal.lines.len(), options.out.display()));
         }
-        Kept(journal)
+        KeptRecord(journal)
     }
 
     /// Adds the first run as decided of a round, and writes.

@@ -24,9 +24,9 @@ mod table;
 mod tests;
 mod turned;
 
-pub use options::Options;
-pub use progress::{Progress, Step};
-pub use record::{Ablation, Change, Cut, Row, SCHEME, Saved, Unmeasured, Verdict};
+pub use options::AblationOptions;
+pub use progress::{AblationProgress, RunStep};
+pub use record::{Ablation, DecisionRow, EndedBudget, GarmentChange, RuleVerdict, SCHEME, Saved, Unmeasured};
 pub use run::ablate;
 pub use table::{csv, lines};
 pub(crate) use turned::path_to;

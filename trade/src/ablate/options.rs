@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// What is asked.
 #[derive(Clone)]
-pub struct Options {
+pub struct AblationOptions {
     /// Folder of the record.
     pub out: PathBuf,
     /// Rounds, those of earlier sessions counted.

@@ -2,16 +2,16 @@
 
 /// What is told on the way.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Progress {
+pub enum AblationProgress {
     /// Something about earlier sessions.
     Note(String),
     /// A run that begins.
-    Run(Step),
+    Run(RunStep),
 }
 
 /// A run that begins, and how many are done.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Step {
+pub struct RunStep {
     /// Runs that are done, those of earlier sessions as well.
     pub done: usize,
     /// Runs in all.
@@ -20,7 +20,7 @@ pub struct Step {
     pub what: String,
 }
 
-impl std::fmt::Display for Step {
+impl std::fmt::Display for RunStep {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "run {} of {}: {}", self.done + 1, self.all, self.what)
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_core::decide::Tolerance;
 use toile_pipeline::Pipeline;
-use toile_pipeline::decide::Decided;
+use toile_pipeline::decide::StageDecision;
 
 /// The version of this form.
 pub const SCHEME: u32 = 1;
@@ -39,15 +39,15 @@ pub struct Ablation {
     /// Processor time of each run as decided, seconds.
     pub cpu_s: Vec<f64>,
     /// A row a decision that was turned round.
-    pub rows: Vec<Row>,
+    pub rows: Vec<DecisionRow>,
     /// What is missing where the budget ended before all runs were done.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cut: Option<Cut>,
+    pub cut: Option<EndedBudget>,
 }
 
 /// A budget that ended before all runs were done.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Cut {
+pub struct EndedBudget {
     /// Runs that are done.
     pub done: usize,
     /// Runs that were asked for.
@@ -61,7 +61,7 @@ pub struct Cut {
 pub struct Unmeasured {
     /// The decision.
     #[serde(flatten)]
-    pub decided: Decided,
+    pub decided: StageDecision,
     /// The option that turns it round.
     pub turned: String,
 }
@@ -76,10 +76,10 @@ impl Ablation {
 
 /// One decision turned round.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct DecisionRow {
     /// The decision.
     #[serde(flatten)]
-    pub decided: Decided,
+    pub decided: StageDecision,
     /// The option that turns it round.
     pub turned: String,
     /// Processor time of each run with it turned round, seconds.
@@ -87,14 +87,14 @@ pub struct Row {
     /// What the decision saved in each round, seconds of processor time.
     pub saved_s: Vec<f64>,
     /// What turning it round changed; none where that run failed.
-    pub change: Option<Change>,
+    pub change: Option<GarmentChange>,
     /// Why the run with it turned round failed.
     pub failed: Option<String>,
     /// Whether the rule is borne out.
-    pub verdict: Verdict,
+    pub verdict: RuleVerdict,
 }
 
-impl Row {
+impl DecisionRow {
     /// What was saved in the mean, seconds, and how far chance may have moved that; none where the
     /// run failed.
     pub fn saved(&self) -> Option<Saved> {
@@ -130,7 +130,7 @@ impl Saved {
 
 /// What turning a decision round changes in the garment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Change {
+pub struct GarmentChange {
     /// True where no bit of the garment changed.
     pub same_bits: bool,
     /// Between the draped surfaces.
@@ -143,7 +143,7 @@ pub struct Change {
     pub crossings: [Option<usize>; 2],
 }
 
-impl Change {
+impl GarmentChange {
     /// Whether it stays within a tolerance.
     pub fn is_within(&self, tolerance: Tolerance) -> bool {
         let texture = |most: f64| self.texture_levels.is_none_or(|t| t <= most);
@@ -159,7 +159,7 @@ impl Change {
 /// What an ablation says of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum RuleVerdict {
     /// It saves more time than chance may move, and stays within its tolerance.
     Holds,
     /// Turning it round changes more than its tolerance.
@@ -172,25 +172,25 @@ pub enum Verdict {
     Cut,
 }
 
-impl Verdict {
+impl RuleVerdict {
     /// By the change and what was saved in each round.
-    pub fn of(change: Option<&Change>, tolerance: Tolerance, saved_s: &[f64]) -> Verdict {
+    pub fn of(change: Option<&GarmentChange>, tolerance: Tolerance, saved_s: &[f64]) -> RuleVerdict {
         match change {
-            None => Verdict::Needed,
-            Some(c) if !c.is_within(tolerance) => Verdict::ChangesMore,
-            Some(_) if Saved::of(saved_s).is_some_and(|s| s.is_measured()) => Verdict::Holds,
-            Some(_) => Verdict::SavesNothing,
+            None => RuleVerdict::Needed,
+            Some(c) if !c.is_within(tolerance) => RuleVerdict::ChangesMore,
+            Some(_) if Saved::of(saved_s).is_some_and(|s| s.is_measured()) => RuleVerdict::Holds,
+            Some(_) => RuleVerdict::SavesNothing,
         }
     }
 
     /// In words.
     pub fn as_str(self) -> &'static str {
         match self {
-            Verdict::Holds => "borne out",
-            Verdict::ChangesMore => "NOT borne out: changes more than its tolerance",
-            Verdict::SavesNothing => "NOT borne out: saves nothing that can be measured",
-            Verdict::Needed => "borne out: turned round, the pipeline fails",
-            Verdict::Cut => "not decided: turned round, the run was stopped at the limit",
+            RuleVerdict::Holds => "borne out",
+            RuleVerdict::ChangesMore => "NOT borne out: changes more than its tolerance",
+            RuleVerdict::SavesNothing => "NOT borne out: saves nothing that can be measured",
+            RuleVerdict::Needed => "borne out: turned round, the pipeline fails",
+            RuleVerdict::Cut => "not decided: turned round, the run was stopped at the limit",
         }
     }
 }

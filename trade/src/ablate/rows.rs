@@ -1,7 +1,7 @@
 //! What an ablation comes to: the runs that are kept as the record that is shown.
 
-use super::kept::{Came, Kept};
-use super::record::{Ablation, Cut, Row, SCHEME, Unmeasured, Verdict};
+use super::kept::{Came, KeptRecord};
+use super::record::{Ablation, DecisionRow, EndedBudget, RuleVerdict, SCHEME, Unmeasured};
 use super::turned::Turned;
 use crate::digest::digest;
 use toile_pipeline::Pipeline;
@@ -11,10 +11,10 @@ pub(super) fn ablation(
     pipeline: &Pipeline,
     until: Option<String>,
     turned: &[Turned],
-    kept: &Kept,
+    kept: &KeptRecord,
     [done, all]: [usize; 2],
 ) -> Ablation {
-    let rows: Vec<Option<Row>> = turned.iter().map(|t| row(t, kept)).collect();
+    let rows: Vec<Option<DecisionRow>> = turned.iter().map(|t| row(t, kept)).collect();
     let missing = turned.iter().zip(&rows).filter(|(_, row)| row.is_none());
     let not_measured =
         missing.map(|(t, _)| Unmeasured { decided: t.decided.clone(), turned: t.by.clone() }).collect();
@@ -30,12 +30,12 @@ pub(super) fn ablation(
         reads: kept.reads().clone(),
         cpu_s: kept.own().into_values().collect(),
         rows: rows.into_iter().flatten().collect(),
-        cut: (done < all).then_some(Cut { done, all, not_measured }),
+        cut: (done < all).then_some(EndedBudget { done, all, not_measured }),
     }
 }
 
 /// The row of a decision; none where it was not turned round yet.
-fn row(turned: &Turned, kept: &Kept) -> Option<Row> {
+fn row(turned: &Turned, kept: &KeptRecord) -> Option<DecisionRow> {
     let came = kept.turned(&turned.by);
     if came.is_empty() {
         return None;
@@ -52,10 +52,10 @@ fn row(turned: &Turned, kept: &Kept) -> Option<Row> {
     }
     let change = change.filter(|_| failed.is_none());
     let verdict = match is_cut {
-        true => Verdict::Cut,
-        false => Verdict::of(change.as_ref(), turned.decided.decision.tolerance, &saved_s),
+        true => RuleVerdict::Cut,
+        false => RuleVerdict::of(change.as_ref(), turned.decided.decision.tolerance, &saved_s),
     };
-    Some(Row {
+    Some(DecisionRow {
         decided: turned.decided.clone(),
         turned: turned.by.clone(),
         cpu_s,

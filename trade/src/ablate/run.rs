@@ -1,11 +1,11 @@
 //! The runs of an ablation, each kept as soon as it is done.
 
-use super::kept::{Came, Kept};
-use super::options::Options;
-use super::record::{Ablation, Change};
+use super::kept::{Came, KeptRecord};
+use super::options::AblationOptions;
+use super::record::{Ablation, GarmentChange};
 use super::rows::ablation;
 use super::turned::{Turned, all_turned};
-use super::{Progress, Step, outline};
+use super::{AblationProgress, RunStep, outline};
 use crate::digest::garment_digest;
 use crate::errors::compare;
 use crate::knobs::source::Source;
@@ -22,50 +22,50 @@ use toile_pipeline::Pipeline;
 pub fn ablate(
     source: &Source<'_>,
     pipeline: &Pipeline,
-    options: &Options,
-    tell: &mut dyn FnMut(Progress),
+    options: &AblationOptions,
+    tell: &mut dyn FnMut(AblationProgress),
 ) -> Result<Ablation, StageError> {
     let started = Instant::now();
     let turned = all_turned(source, pipeline, options.bench.until.as_deref())?;
-    let kept = Kept::open(pipeline, options, &mut |note| tell(Progress::Note(note)));
+    let kept = KeptRecord::open(pipeline, options, &mut |note| tell(AblationProgress::Note(note)));
     let mut session = Session { pipeline, options, turned, kept, started };
     match session.rounds(tell) {
-        Ok(()) | Err(Stop::Budget) => session.ablation(),
-        Err(Stop::Failed(e)) => Err(e),
+        Ok(()) | Err(AblationStop::Budget) => session.ablation(),
+        Err(AblationStop::Failed(e)) => Err(e),
     }
 }
 
 /// An ablation at work.
 struct Session<'a> {
     pipeline: &'a Pipeline,
-    options: &'a Options,
+    options: &'a AblationOptions,
     turned: Vec<Turned>,
-    kept: Kept,
+    kept: KeptRecord,
     started: Instant,
 }
 
 /// Why it goes no further.
-enum Stop {
+enum AblationStop {
     /// The budget is used up.
     Budget,
     /// A fault, or the user's wish.
     Failed(StageError),
 }
 
-impl From<StageError> for Stop {
+impl From<StageError> for AblationStop {
     fn from(e: StageError) -> Self {
-        Stop::Failed(e)
+        AblationStop::Failed(e)
     }
 }
 
 impl Session<'_> {
-    fn rounds(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<(), Stop> {
+    fn rounds(&mut self, tell: &mut dyn FnMut(AblationProgress)) -> Result<(), AblationStop> {
         (0..self.options.repeats).try_for_each(|round| self.round(round, tell))
     }
 
     /// What is missing of a round, beside a run as decided of this session: garments and times of
     /// one hour are compared.
-    fn round(&mut self, round: usize, tell: &mut dyn FnMut(Progress)) -> Result<(), Stop> {
+    fn round(&mut self, round: usize, tell: &mut dyn FnMut(AblationProgress)) -> Result<(), AblationStop> {
         let missing: Vec<usize> = self.missing(round).collect();
         let is_new = !self.kept.own().contains_key(&round);
         if missing.is_empty() && !is_new {
@@ -79,14 +79,14 @@ impl Session<'_> {
         missing.into_iter().try_for_each(|index| self.turned_round(index, round, &own, tell))
     }
 
-    fn as_decided(&self, what: &str, tell: &mut dyn FnMut(Progress)) -> Result<Ran, Stop> {
+    fn as_decided(&self, what: &str, tell: &mut dyn FnMut(AblationProgress)) -> Result<Ran, AblationStop> {
         let left = self.left()?;
         tell(self.step(what));
         let ran = self.options.bench.run(self.pipeline, left, None);
         ran.map_err(|missed| match missed {
             // Without a limit of its own, only the budget ends it.
-            Missed::OverLimit(_) => Stop::Budget,
-            missed => Stop::Failed(missed.into()),
+            Missed::OverLimit(_) => AblationStop::Budget,
+            missed => AblationStop::Failed(missed.into()),
         })
     }
 
@@ -96,8 +96,8 @@ impl Session<'_> {
         index: usize,
         round: usize,
         own: &Ran,
-        tell: &mut dyn FnMut(Progress),
-    ) -> Result<(), Stop> {
+        tell: &mut dyn FnMut(AblationProgress),
+    ) -> Result<(), AblationStop> {
         let left = self.left()?;
         let turned = &self.turned[index];
         tell(self.step(&turned.by));
@@ -108,7 +108,7 @@ impl Session<'_> {
                 saved_s: ran.cpu_s - own.cpu_s,
                 change: (!self.kept.has_change(&turned.by)).then(|| changed(own, &ran)).transpose()?,
             },
-            Err(Missed::Cancelled) => return Err(Stop::Failed(Missed::Cancelled.into())),
+            Err(Missed::Cancelled) => return Err(AblationStop::Failed(Missed::Cancelled.into())),
             Err(Missed::Failed(e)) => Came::Failed { message: e.message },
             // The end of the budget says nothing of the decision.
             Err(Missed::OverLimit(seconds)) => {
@@ -120,9 +120,9 @@ impl Session<'_> {
     }
 
     /// What is left of the budget, where there is one.
-    fn left(&self) -> Result<Option<Duration>, Stop> {
+    fn left(&self) -> Result<Option<Duration>, AblationStop> {
         let left = self.options.budget.map(|budget| budget.saturating_sub(self.started.elapsed()));
-        if left.is_some_and(|l| l.is_zero()) { Err(Stop::Budget) } else { Ok(left) }
+        if left.is_some_and(|l| l.is_zero()) { Err(AblationStop::Budget) } else { Ok(left) }
     }
 
     /// The decisions that a round has not turned round yet.
@@ -138,9 +138,9 @@ impl Session<'_> {
         [all - (0..rounds).map(missing).sum::<usize>(), all]
     }
 
-    fn step(&self, what: &str) -> Progress {
+    fn step(&self, what: &str) -> AblationProgress {
         let [done, all] = self.count();
-        Progress::Run(Step { done, all, what: what.to_owned() })
+        AblationProgress::Run(RunStep { done, all, what: what.to_owned() })
     }
 
     fn ablation(self) -> Result<Ablation, StageError> {
@@ -153,10 +153,10 @@ impl Session<'_> {
     }
 }
 
-fn changed(own: &Ran, turned: &Ran) -> Result<Change, StageError> {
+fn changed(own: &Ran, turned: &Ran) -> Result<GarmentChange, StageError> {
     let errors = compare(turned, own)?;
     let crossings = |ran: &Ran| ran.figures.as_ref().and_then(|f| f.garment.self_crossings);
-    Ok(Change {
+    Ok(GarmentChange {
         same_bits: garment_digest(&own.garment) == garment_digest(&turned.garment),
         distance_mm: errors.distance_mm,
         outline_mm: outline::distance(&own.garment, &turned.garment).into(),

@@ -1,6 +1,6 @@
 //! An ablation as lines of text: a table for people, comma-separated values for programs.
 
-use super::record::{Ablation, Change, Cut, Row};
+use super::record::{Ablation, DecisionRow, EndedBudget, GarmentChange};
 use crate::record::median;
 use std::fmt::Write;
 
@@ -49,7 +49,7 @@ fn head() -> String {
 }
 
 /// What a budget that ended leaves open.
-fn missing(cut: &Cut) -> Vec<String> {
+fn missing(cut: &EndedBudget) -> Vec<String> {
     let mut lines = vec![format!(
         "the budget ended after {} of {} runs; the same command goes on from there",
         cut.done, cut.all
@@ -63,7 +63,7 @@ fn missing(cut: &Cut) -> Vec<String> {
     lines
 }
 
-fn line(row: &Row) -> String {
+fn line(row: &DecisionRow) -> String {
     let seconds = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |s| format!("{s:.2}"));
     let saved = row.saved();
     let time = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
@@ -94,7 +94,7 @@ fn line(row: &Row) -> String {
     format!("{text}  {}", row.decided.decision.tolerance)
 }
 
-fn crossings(c: &Change) -> String {
+fn crossings(c: &GarmentChange) -> String {
     let [a, b] = c.crossings.map(|n| n.map_or_else(|| "-".to_owned(), |n| n.to_string()));
     format!("{a}, {b}")
 }
@@ -112,7 +112,7 @@ pub fn csv(ablation: &Ablation) -> String {
 }
 
 /// The values of a row; `own` is the time as decided.
-fn values(row: &Row, own: f64) -> String {
+fn values(row: &DecisionRow, own: f64) -> String {
     let d = &row.decided.decision;
     let turned = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
     let noise = row.saved().map(|s| s.noise).filter(|n| n.is_finite());
@@ -130,7 +130,7 @@ fn values(row: &Row, own: f64) -> String {
     )
 }
 
-fn changes(change: Option<&Change>) -> [Option<f64>; 8] {
+fn changes(change: Option<&GarmentChange>) -> [Option<f64>; 8] {
     let Some(c) = change else { return [None; 8] };
     let [own, turned] = c.crossings.map(|n| n.map(|n| n as f64));
     let (d, outline) = (&c.distance_mm, &c.outline_mm);

@@ -5,11 +5,11 @@ use crate::errors::Millimetres;
 use crate::record::Machine;
 use std::time::Duration;
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
-use toile_pipeline::decide::Decided;
+use toile_pipeline::decide::StageDecision;
 
-fn change(p95: f64, same_bits: bool) -> Change {
+fn change(p95: f64, same_bits: bool) -> GarmentChange {
     let mm = |x: f64| Millimetres { mean: x / 2.0, p95: x, max: 2.0 * x };
-    Change {
+    GarmentChange {
         same_bits,
         distance_mm: mm(p95),
         outline_mm: mm(p95 / 10.0),
@@ -18,7 +18,7 @@ fn change(p95: f64, same_bits: bool) -> Change {
     }
 }
 
-fn row(tolerance: Tolerance, change: Option<Change>, saved_s: &[f64]) -> Row {
+fn row(tolerance: Tolerance, change: Option<GarmentChange>, saved_s: &[f64]) -> DecisionRow {
     let decision = Decision {
         rule: "few-pixels".into(),
         state: State::Simplified,
@@ -29,50 +29,51 @@ fn row(tolerance: Tolerance, change: Option<Change>, saved_s: &[f64]) -> Row {
         source: "Nyquist 1928".into(),
         turn: Turn::Param { name: "pixel".into(), value: "\"0 mm\"".into() },
     };
-    let decided = Decided { stage: "Mean".into(), decision };
-    Row {
+    let decided = StageDecision { stage: "Mean".into(), decision };
+    DecisionRow {
         turned: decided.words("stages.Mean"),
         decided,
         cpu_s: saved_s.iter().map(|s| 2.0 + s).collect(),
         saved_s: saved_s.to_vec(),
         change,
         failed: change.is_none().then(|| "Rest: it does not close".to_owned()),
-        verdict: Verdict::of(change.as_ref(), tolerance, saved_s),
+        verdict: RuleVerdict::of(change.as_ref(), tolerance, saved_s),
     }
 }
 
 #[test]
 fn a_run_that_was_stopped_at_its_limit_bears_nothing_out() {
-    let cut = Row { verdict: Verdict::Cut, ..row(Tolerance::SameBits, None, &[]) };
+    let cut = DecisionRow { verdict: RuleVerdict::Cut, ..row(Tolerance::SameBits, None, &[]) };
     assert_eq!(cut.verdict.as_str(), "not decided: turned round, the run was stopped at the limit");
 }
 
 #[test]
 fn a_rule_is_borne_out_by_time_beyond_chance_and_by_its_tolerance() {
-    let verdict = |tolerance, change: Option<Change>, saved: &[f64]| row(tolerance, change, saved).verdict;
+    let verdict =
+        |tolerance, change: Option<GarmentChange>, saved: &[f64]| row(tolerance, change, saved).verdict;
     let (same, moved) = (Some(change(0.0, true)), Some(change(3.0, false)));
-    assert_eq!(verdict(Tolerance::SameBits, same, &[0.1, 0.2]), Verdict::Holds);
-    assert_eq!(verdict(Tolerance::SameBits, same, &[0.1, -0.01]), Verdict::SavesNothing);
-    assert_eq!(verdict(Tolerance::SameBits, same, &[0.1]), Verdict::SavesNothing, "one round is none");
-    assert_eq!(verdict(Tolerance::SameBits, moved, &[0.1, 0.1]), Verdict::ChangesMore);
-    assert_eq!(verdict(Tolerance::Distance(3e-3), moved, &[0.1, 0.1]), Verdict::Holds);
-    assert_eq!(verdict(Tolerance::Distance(2.9e-3), moved, &[0.1, 0.1]), Verdict::ChangesMore);
-    assert_eq!(verdict(Tolerance::Outline(0.31e-3), moved, &[0.1, 0.1]), Verdict::Holds);
-    assert_eq!(verdict(Tolerance::Outline(0.29e-3), moved, &[0.1, 0.1]), Verdict::ChangesMore);
-    let painted = Some(Change { same_bits: true, ..change(3.0, true) });
-    assert_eq!(verdict(Tolerance::Texture(3.0), painted, &[0.1, 0.1]), Verdict::Holds);
-    assert_eq!(verdict(Tolerance::Texture(2.9), painted, &[0.1, 0.1]), Verdict::ChangesMore);
+    assert_eq!(verdict(Tolerance::SameBits, same, &[0.1, 0.2]), RuleVerdict::Holds);
+    assert_eq!(verdict(Tolerance::SameBits, same, &[0.1, -0.01]), RuleVerdict::SavesNothing);
+    assert_eq!(verdict(Tolerance::SameBits, same, &[0.1]), RuleVerdict::SavesNothing, "one round is none");
+    assert_eq!(verdict(Tolerance::SameBits, moved, &[0.1, 0.1]), RuleVerdict::ChangesMore);
+    assert_eq!(verdict(Tolerance::Distance(3e-3), moved, &[0.1, 0.1]), RuleVerdict::Holds);
+    assert_eq!(verdict(Tolerance::Distance(2.9e-3), moved, &[0.1, 0.1]), RuleVerdict::ChangesMore);
+    assert_eq!(verdict(Tolerance::Outline(0.31e-3), moved, &[0.1, 0.1]), RuleVerdict::Holds);
+    assert_eq!(verdict(Tolerance::Outline(0.29e-3), moved, &[0.1, 0.1]), RuleVerdict::ChangesMore);
+    let painted = Some(GarmentChange { same_bits: true, ..change(3.0, true) });
+    assert_eq!(verdict(Tolerance::Texture(3.0), painted, &[0.1, 0.1]), RuleVerdict::Holds);
+    assert_eq!(verdict(Tolerance::Texture(2.9), painted, &[0.1, 0.1]), RuleVerdict::ChangesMore);
     assert_eq!(
         verdict(Tolerance::Texture(9.0), moved, &[0.1, 0.1]),
-        Verdict::ChangesMore,
+        RuleVerdict::ChangesMore,
         "the garment changed"
     );
     assert_eq!(
         verdict(Tolerance::SameBits, painted, &[0.1, 0.1]),
-        Verdict::ChangesMore,
+        RuleVerdict::ChangesMore,
         "the texture changed"
     );
-    assert_eq!(verdict(Tolerance::SameBits, None, &[]), Verdict::Needed);
+    assert_eq!(verdict(Tolerance::SameBits, None, &[]), RuleVerdict::Needed);
 }
 
 fn ablation() -> Ablation {
@@ -100,7 +101,7 @@ fn cut() -> Ablation {
     let mut all = ablation();
     let last = all.rows.pop().unwrap();
     let not_measured = vec![Unmeasured { decided: last.decided, turned: last.turned }];
-    Ablation { cut: Some(Cut { done: 4, all: 9, not_measured }), ..all }
+    Ablation { cut: Some(EndedBudget { done: 4, all: 9, not_measured }), ..all }
 }
 
 #[test]

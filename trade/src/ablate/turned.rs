@@ -3,12 +3,12 @@
 use crate::knobs::source::{Source, path_of};
 use toile_core::StageError;
 use toile_core::decide::Turn;
-use toile_pipeline::decide::{Decided, decisions};
+use toile_pipeline::decide::{StageDecision, decisions};
 use toile_pipeline::{Override, Pipeline, RunOptions};
 
 /// A decision with the pipeline that it is turned round in.
 pub(super) struct Turned {
-    pub(super) decided: Decided,
+    pub(super) decided: StageDecision,
     /// The option that turns it round; no two decisions have the same.
     pub(super) by: String,
     pub(super) pipeline: Pipeline,
@@ -33,7 +33,7 @@ pub(super) fn all_turned(
     decided.into_iter().map(|d| turned(source, pipeline, d)).collect()
 }
 
-fn turned(source: &Source<'_>, pipeline: &Pipeline, decided: Decided) -> Result<Turned, StageError> {
+fn turned(source: &Source<'_>, pipeline: &Pipeline, decided: StageDecision) -> Result<Turned, StageError> {
     let path = path_to(source, pipeline, &decided.stage);
     let (more, also) = match &decided.decision.turn {
         Turn::Param { name, value } => {

@@ -11,16 +11,16 @@ use std::collections::BTreeMap;
 use toile_core::cost::{Quantity, Size};
 
 /// A stage and a kind of garment (none for all of them), and a quantity.
-type Place = (Option<String>, Option<String>, Quantity);
+type BiasPlace = (Option<String>, Option<String>, Quantity);
 
 /// Factors on what the rules foresee.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Bias(BTreeMap<Place, f64>);
+pub(super) struct Bias(BTreeMap<BiasPlace, f64>);
 
 impl Bias {
     /// Learns from runs whose sizes were foreseen.
     pub(super) fn learn<'a>(records: impl Iterator<Item = &'a CostRecord>) -> Self {
-        let mut ratios: BTreeMap<Place, Vec<f64>> = BTreeMap::new();
+        let mut ratios: BTreeMap<BiasPlace, Vec<f64>> = BTreeMap::new();
         for r in records {
             for (quantity, foreseen) in r.foreseen.iter().filter(|(_, f)| *f > 0.0) {
                 let Some(fact) = r.size.get(quantity).filter(|f| *f > 0.0) else { continue };

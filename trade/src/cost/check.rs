@@ -1,7 +1,7 @@
 //! How well stages are predicted on pipelines that the laws were not fitted on.
 
-use super::record::{CostRecord, Figure};
-use super::{Costs, Place};
+use super::record::{CostFigure, CostRecord};
+use super::{Costs, StagePlace};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A prediction is right where it differs from the fact by at most this share of the fact.
@@ -40,7 +40,7 @@ impl Tally {
 
 /// A stage of a pipeline that was left out.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Verdict {
+pub struct StageVerdict {
     /// The pipeline's name.
     pub pipeline: String,
     /// The stage's name.
@@ -57,11 +57,11 @@ pub struct Verdict {
 
 /// The whole of it, for one figure.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Check {
+pub struct PredictionCheck {
     /// What was predicted.
-    pub figure: Figure,
+    pub figure: CostFigure,
     /// By pipeline and stage.
-    pub stages: Vec<Verdict>,
+    pub stages: Vec<StageVerdict>,
     /// Every prediction; stages without any law count as wrong.
     pub all: Tally,
     /// Those of facts that tell: 1 ms and longer, 1 MB and more.
@@ -72,10 +72,10 @@ pub struct Check {
 
 /// Leaves out each of the pipelines in turn, fits to the others and predicts it from its photos'
 /// headers and its settings alone. Without names all are left out in turn.
-pub fn check(records: &[CostRecord], names: &[String], figure: Figure) -> Check {
+pub fn check(records: &[CostRecord], names: &[String], figure: CostFigure) -> PredictionCheck {
     let known: BTreeSet<&str> = records.iter().map(|r| r.pipeline.as_str()).collect();
     let chosen = known.into_iter().filter(|k| names.is_empty() || names.iter().any(|n| n == k));
-    let mut check = Check {
+    let mut check = PredictionCheck {
         figure,
         stages: Vec::new(),
         all: Tally::default(),
@@ -91,7 +91,7 @@ pub fn check(records: &[CostRecord], names: &[String], figure: Figure) -> Check 
     check
 }
 
-fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Costs) {
+fn judge(check: &mut PredictionCheck, pipeline: &str, left_out: &[CostRecord], costs: &Costs) {
     let mut by_stage: BTreeMap<&str, Vec<&CostRecord>> = BTreeMap::new();
     left_out.iter().for_each(|r| by_stage.entry(&r.stage).or_default().push(r));
     let least = if check.figure.is_time() { TELLING.0 } else { TELLING.1 };
@@ -101,7 +101,7 @@ fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Cos
             let Some(fact) = check.figure.of(&run.used) else { continue };
             let size = costs.corrected(stage, &run.style, &run.foreseen);
             let estimate = costs.estimate(
-                &Place { pipeline, stage, role: &run.role, style: &run.style },
+                &StagePlace { pipeline, stage, role: &run.role, style: &run.style },
                 &size,
                 check.figure,
             );
@@ -121,6 +121,6 @@ fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Cos
         ratios.sort_by(f64::total_cmp);
         let (pipeline, stage) = (pipeline.to_owned(), stage.to_owned());
         let (stand_in, fact) = (!costs.knows(&stage), super::seen::median(&mut facts));
-        check.stages.push(Verdict { pipeline, stage, stand_in, ratios, fact, tally });
+        check.stages.push(StageVerdict { pipeline, stage, stand_in, ratios, fact, tally });
     }
 }

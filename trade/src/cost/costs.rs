@@ -1,8 +1,8 @@
 //! The laws of all stages, from what this machine's runs took and from what is shipped.
 
 use super::bias::Bias;
-use super::law::Law;
-use super::record::{CostRecord, Figure};
+use super::law::CostLaw;
+use super::record::{CostFigure, CostRecord};
 use super::seen::{Seen, median};
 use super::terms::terms;
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,14 +34,14 @@ pub struct Costs {
     met: BTreeSet<String>,
     bias: OnceLock<Bias>,
     /// The laws that were fitted; none where there is no record.
-    laws: Mutex<BTreeMap<(Group, String, Figure), Option<Law>>>,
+    laws: Mutex<BTreeMap<(RecordGroup, String, CostFigure), Option<CostLaw>>>,
     /// How much longer this machine takes; none while that is not known.
-    speeds: Mutex<BTreeMap<Figure, Option<f64>>>,
+    speeds: Mutex<BTreeMap<CostFigure, Option<f64>>>,
 }
 
 /// Whose records a law is fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Group {
+enum RecordGroup {
     /// A stage's.
     Stage,
     /// Those of all stages of a role, for stages without record.
@@ -50,18 +50,18 @@ enum Group {
     Shipped,
 }
 
-impl Group {
+impl RecordGroup {
     fn name(self, record: &CostRecord) -> &str {
         match self {
-            Group::Stage | Group::Shipped => &record.stage,
-            Group::Role => &record.role,
+            RecordGroup::Stage | RecordGroup::Shipped => &record.stage,
+            RecordGroup::Role => &record.role,
         }
     }
 }
 
 /// A stage in its pipeline, by names.
 #[derive(Debug, Clone, Copy)]
-pub struct Place<'a> {
+pub struct StagePlace<'a> {
     /// The pipeline's name.
     pub pipeline: &'a str,
     /// The stage's name, as in the records.
@@ -100,35 +100,35 @@ impl Costs {
     }
 
     /// One figure of a stage of a pipeline; none where no stage of its role was ever seen.
-    pub fn estimate(&self, at: &Place<'_>, size: &Size, figure: Figure) -> Option<Estimate> {
+    pub fn estimate(&self, at: &StagePlace<'_>, size: &Size, figure: CostFigure) -> Option<Estimate> {
         let elsewhere = self.elsewhere(figure);
-        let (law, more) = match self.law(Group::Stage, at.stage, figure) {
+        let (law, more) = match self.law(RecordGroup::Stage, at.stage, figure) {
             Some(law) => (law, elsewhere),
-            None => (self.law(Group::Role, at.role, figure)?, elsewhere + OTHER_STAGE),
+            None => (self.law(RecordGroup::Role, at.role, figure)?, elsewhere + OTHER_STAGE),
         };
         Some(law.estimate(size, at.style, self.met.contains(at.pipeline), more))
     }
 
     /// How far this machine may lie from what the laws rest on, as a logarithm.
-    fn elsewhere(&self, figure: Figure) -> f64 {
+    fn elsewhere(&self, figure: CostFigure) -> f64 {
         let is_told = self.shipped.is_empty() || !figure.is_time() || self.speed(figure).is_some();
         if is_told { 0.0 } else { OTHER_MACHINE }
     }
 
     /// All figures of a stage.
-    pub fn predicted(&self, at: &Place<'_>, size: &Size) -> Predicted {
+    pub fn predicted(&self, at: &StagePlace<'_>, size: &Size) -> Predicted {
         let of = |figure| self.estimate(at, size, figure);
         Predicted {
-            wall_s: of(Figure::Wall),
-            cpu_s: of(Figure::Cpu),
-            peak_bytes: of(Figure::Peak),
-            kept_bytes: of(Figure::Kept),
+            wall_s: of(CostFigure::Wall),
+            cpu_s: of(CostFigure::Cpu),
+            peak_bytes: of(CostFigure::Peak),
+            kept_bytes: of(CostFigure::Kept),
         }
     }
 
     /// True where the stage has records of its own.
     pub fn knows(&self, stage: &str) -> bool {
-        self.law(Group::Stage, stage, Figure::Wall).is_some()
+        self.law(RecordGroup::Stage, stage, CostFigure::Wall).is_some()
     }
 
     /// True where the stage has run on this machine.
@@ -137,7 +137,7 @@ impl Costs {
     }
 
     /// The law of a name; none where nothing was seen of it.
-    fn law(&self, group: Group, name: &str, figure: Figure) -> Option<Law> {
+    fn law(&self, group: RecordGroup, name: &str, figure: CostFigure) -> Option<CostLaw> {
         let key = (group, name.to_owned(), figure);
         if let Some(law) = self.laws.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return law.clone();
@@ -147,12 +147,12 @@ impl Costs {
         law
     }
 
-    fn fitted(&self, group: Group, name: &str, figure: Figure) -> Option<Law> {
+    fn fitted(&self, group: RecordGroup, name: &str, figure: CostFigure) -> Option<CostLaw> {
         let of_name = |r: &&CostRecord| group.name(r) == name;
         let shipped: Vec<&CostRecord> = self.shipped.iter().filter(of_name).collect();
         let (own, weight, factor) = match group {
-            Group::Shipped => (Vec::new(), 1.0, 1.0),
-            Group::Stage | Group::Role => {
+            RecordGroup::Shipped => (Vec::new(), 1.0, 1.0),
+            RecordGroup::Stage | RecordGroup::Role => {
                 let factor = if figure.is_time() { self.speed(figure).unwrap_or(1.0) } else { 1.0 };
                 (self.own.iter().filter(of_name).collect(), SHIPPED_RUNS / shipped.len() as f64, factor)
             }
@@ -172,18 +172,18 @@ impl Costs {
                 weight: *weight,
             })
             .collect();
-        Law::fit(terms(role), &seen, figure.floor())
+        CostLaw::fit(terms(role), &seen, figure.floor())
     }
 
     /// How much longer this machine takes than the one of the shipped records; none while that is
     /// not known.
-    fn speed(&self, figure: Figure) -> Option<f64> {
+    fn speed(&self, figure: CostFigure) -> Option<f64> {
         if let Some(speed) = self.speeds.lock().unwrap_or_else(PoisonError::into_inner).get(&figure) {
             return *speed;
         }
         let ratio = |r: &CostRecord| {
             let fact = figure.of(&r.used).filter(|f| *f >= TELLING_S)?;
-            Some((fact / self.law(Group::Shipped, &r.stage, figure)?.value(&r.size, &r.style)).ln())
+            Some((fact / self.law(RecordGroup::Shipped, &r.stage, figure)?.value(&r.size, &r.style)).ln())
         };
         let mut ratios: Vec<f64> = self.own.iter().filter_map(ratio).collect();
         let speed = (ratios.len() >= TELLING_RUNS).then(|| median(&mut ratios).exp());

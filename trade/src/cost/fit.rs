@@ -10,7 +10,7 @@
 
 /// One observation: the terms' values, the fact (greater than 0) and its weight.
 #[derive(Debug, Clone)]
-pub(super) struct Row {
+pub(super) struct Observation {
     pub(super) terms: Vec<f64>,
     pub(super) fact: f64,
     pub(super) weight: f64,
@@ -29,9 +29,10 @@ const ROUNDS: usize = 6;
 const RIDGE: f64 = 1e-9;
 
 /// The factors, one a term; none without a usable row.
-pub(super) fn fit(rows: &[Row], terms: usize) -> Option<Vec<f64>> {
-    let usable = |r: &&Row| r.fact > 0.0 && r.fact.is_finite() && r.weight > 0.0 && r.terms.len() == terms;
-    let rows: Vec<&Row> = rows.iter().filter(usable).collect();
+pub(super) fn fit(rows: &[Observation], terms: usize) -> Option<Vec<f64>> {
+    let usable =
+        |r: &&Observation| r.fact > 0.0 && r.fact.is_finite() && r.weight > 0.0 && r.terms.len() == terms;
+    let rows: Vec<&Observation> = rows.iter().filter(usable).collect();
     let subsets = (1..1_usize << terms).map(|mask| (0..terms).filter(|i| mask >> i & 1 == 1).collect());
     let tried = subsets.filter_map(|columns: Vec<usize>| {
         let factors = robust(&rows, &columns)?;
@@ -46,17 +47,17 @@ pub(super) fn fit(rows: &[Row], terms: usize) -> Option<Vec<f64>> {
 }
 
 /// What a subset predicts of a row.
-fn predicted(row: &Row, columns: &[usize], factors: &[f64]) -> f64 {
+fn predicted(row: &Observation, columns: &[usize], factors: &[f64]) -> f64 {
     columns.iter().zip(factors).map(|(c, f)| row.terms[*c] * f).sum()
 }
 
 /// How far a prediction lies from the fact, as a logarithm.
-fn error(row: &Row, columns: &[usize], factors: &[f64]) -> f64 {
+fn error(row: &Observation, columns: &[usize], factors: &[f64]) -> f64 {
     (predicted(row, columns, factors) / row.fact).ln().abs().min(FARTHEST)
 }
 
 /// Reweighted least squares; none where a factor is not positive.
-fn robust(rows: &[&Row], columns: &[usize]) -> Option<Vec<f64>> {
+fn robust(rows: &[&Observation], columns: &[usize]) -> Option<Vec<f64>> {
     let mut weights: Vec<f64> = rows.iter().map(|r| r.weight).collect();
     let mut factors = Vec::new();
     for _ in 0..ROUNDS {
@@ -69,7 +70,7 @@ fn robust(rows: &[&Row], columns: &[usize]) -> Option<Vec<f64>> {
 }
 
 /// Normal equations of the relative errors, columns brought to like size.
-fn least_squares(rows: &[&Row], columns: &[usize], weights: &[f64]) -> Option<Vec<f64>> {
+fn least_squares(rows: &[&Observation], columns: &[usize], weights: &[f64]) -> Option<Vec<f64>> {
     let k = columns.len();
     let total: f64 = weights.iter().sum();
     let scale: Vec<f64> = columns
@@ -117,9 +118,9 @@ fn solve(mut m: Vec<Vec<f64>>) -> Option<Vec<f64>> {
 
 /// Generalised cross-validation of the capped errors; none where there are no more rows than
 /// factors, save one of each.
-fn validation(rows: &[&Row], columns: &[usize], factors: &[f64]) -> Option<f64> {
+fn validation(rows: &[&Observation], columns: &[usize], factors: &[f64]) -> Option<f64> {
     let total: f64 = rows.iter().map(|r| r.weight).sum();
-    let loss = |r: &&Row| {
+    let loss = |r: &&Observation| {
         let e = error(r, columns, factors);
         // Huber's loss.
         r.weight * if e < FAR { e * e } else { FAR * (2.0 * e - FAR) }

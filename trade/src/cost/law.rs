@@ -1,6 +1,6 @@
 //! A stage's law with its uncertainty.
 
-use super::fit::{Row, fit};
+use super::fit::{Observation, fit};
 use super::kinds::Kinds;
 use super::seen::{Seen, median};
 use super::terms::Term;
@@ -21,7 +21,7 @@ const CAP: f64 = 1.5;
 
 /// A sum of terms with what is known of its errors.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Law {
+pub(super) struct CostLaw {
     terms: &'static [Term],
     factors: Vec<f64>,
     /// What kinds of garment add to the sum of terms.
@@ -37,20 +37,20 @@ pub(super) struct Law {
     floor: f64,
 }
 
-impl Law {
+impl CostLaw {
     /// Fits a law; none where nothing was seen.
     pub(super) fn fit(terms: &'static [Term], seen: &[Seen<'_>], floor: f64) -> Option<Self> {
-        let row = |s: &Seen<'_>| Row {
+        let row = |s: &Seen<'_>| Observation {
             terms: terms.iter().map(|t| t.at(s.size)).collect(),
             fact: s.fact,
             weight: s.weight,
         };
-        let rows: Vec<Row> = seen.iter().map(row).collect();
+        let rows: Vec<Observation> = seen.iter().map(row).collect();
         let factors = fit(&rows, terms.len())?;
         let (range, between) = ((0.0, f64::INFINITY), (0.0, 1.0));
         let kinds = Kinds::default();
-        let mut law = Law { terms, factors, kinds, spread: 0.0, free: 1.0, between, range, floor };
-        let errors = |law: &Law| -> Vec<f64> {
+        let mut law = CostLaw { terms, factors, kinds, spread: 0.0, free: 1.0, between, range, floor };
+        let errors = |law: &CostLaw| -> Vec<f64> {
             seen.iter().map(|s| (s.fact / law.value(s.size, s.style)).ln()).collect()
         };
         // Least squares of relative errors lie low; the middle of the runs should be in the middle.

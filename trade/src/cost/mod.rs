@@ -39,12 +39,12 @@ mod work;
 #[cfg(test)]
 mod tests;
 
-pub use check::{Check, Tally, Verdict, check};
-pub use costs::{Costs, Place};
+pub use check::{PredictionCheck, StageVerdict, Tally, check};
+pub use costs::{Costs, StagePlace};
 pub use meter::{MemoryCount, Stopwatch};
 pub use note::note;
 pub use predict::{Forecast, forecast, predict, sizes, total};
-pub use record::{CostRecord, Figure, Host};
+pub use record::{CostFigure, CostRecord, HostMachine};
 pub use repeats::shortest;
 pub use shipped::{Collection, parse as parse_collection, shipped};
 pub use store::{CostStore, Opened};

@@ -1,9 +1,9 @@
 //! A pipeline's forecast.
 
 use super::named::{key, style};
-use super::record::Figure;
+use super::record::CostFigure;
 use super::work::work;
-use super::{Costs, Place};
+use super::{Costs, StagePlace};
 use toile_core::Node;
 use toile_core::cost::{Estimate, Predicted, Size};
 use toile_pipeline::Pipeline;
@@ -45,7 +45,7 @@ pub fn sizes(pipeline: &Pipeline, costs: &Costs) -> Vec<Size> {
 pub fn forecast(pipeline: &Pipeline, costs: &Costs, node: usize, size: Size) -> Option<Forecast> {
     let node = pipeline.nodes.get(node)?;
     let (work, role, style) = (work(node), node.card.role.as_str(), style(pipeline));
-    let place = Place { pipeline: &pipeline.name, stage: &work, role, style: &style };
+    let place = StagePlace { pipeline: &pipeline.name, stage: &work, role, style: &style };
     let predicted = costs.predicted(&place, &size);
     let (known, measured_here) = (costs.knows(&work), costs.measured_here(&work));
     Some(Forecast { stage: node.id.clone(), size, predicted, known, measured_here })
@@ -64,22 +64,22 @@ fn best(corrected: &Size, rules: &Size, facts: &Size) -> Size {
 /// All stages together: times add up, with errors that do not depend on each other; memory is the
 /// peak of one stage on top of what those before it keep.
 pub fn total(stages: &[&Predicted]) -> Predicted {
-    let of = |p: &Predicted, f: Figure| f.predicted(p);
+    let of = |p: &Predicted, f: CostFigure| f.predicted(p);
     let sum = |figure| sum(stages.iter().filter_map(|p| of(p, figure)));
     let mut held: Vec<Estimate> = Vec::new();
     let mut peak: Option<Estimate> = None;
     for p in stages {
-        if let Some(own) = of(p, Figure::Peak) {
+        if let Some(own) = of(p, CostFigure::Peak) {
             let here = self::sum(held.iter().copied().chain([own]));
             peak = peak.into_iter().chain(here).reduce(|a, b| if a.value < b.value { b } else { a });
         }
-        held.extend(of(p, Figure::Kept));
+        held.extend(of(p, CostFigure::Kept));
     }
     Predicted {
-        wall_s: sum(Figure::Wall),
-        cpu_s: sum(Figure::Cpu),
+        wall_s: sum(CostFigure::Wall),
+        cpu_s: sum(CostFigure::Cpu),
         peak_bytes: peak,
-        kept_bytes: sum(Figure::Kept),
+        kept_bytes: sum(CostFigure::Kept),
     }
 }
 

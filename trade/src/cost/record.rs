@@ -5,7 +5,7 @@ use toile_core::cost::{Predicted, Size, Used};
 
 /// What is predicted of a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Figure {
+pub enum CostFigure {
     /// Wall time, seconds.
     Wall,
     /// Processor time of all threads, seconds.
@@ -16,13 +16,13 @@ pub enum Figure {
     Kept,
 }
 
-impl Figure {
+impl CostFigure {
     /// Every figure.
-    pub const ALL: [Figure; 4] = [Figure::Wall, Figure::Cpu, Figure::Peak, Figure::Kept];
+    pub const ALL: [CostFigure; 4] = [CostFigure::Wall, CostFigure::Cpu, CostFigure::Peak, CostFigure::Kept];
 
     /// True of times, which differ from machine to machine.
     pub fn is_time(self) -> bool {
-        matches!(self, Figure::Wall | Figure::Cpu)
+        matches!(self, CostFigure::Wall | CostFigure::Cpu)
     }
 
     /// Amounts below this are alike: timer and allocator say no less.
@@ -33,10 +33,10 @@ impl Figure {
     /// The fact of a run, at least the floor.
     pub fn of(self, used: &Used) -> Option<f64> {
         let fact = match self {
-            Figure::Wall => Some(used.wall_s),
-            Figure::Cpu => used.cpu_s,
-            Figure::Peak => used.peak_bytes.map(|b| b as f64),
-            Figure::Kept => used.kept_bytes.map(|b| b as f64),
+            CostFigure::Wall => Some(used.wall_s),
+            CostFigure::Cpu => used.cpu_s,
+            CostFigure::Peak => used.peak_bytes.map(|b| b as f64),
+            CostFigure::Kept => used.kept_bytes.map(|b| b as f64),
         };
         fact.filter(|f| f.is_finite()).map(|f| f.max(self.floor()))
     }
@@ -44,44 +44,44 @@ impl Figure {
     /// Its place in a prediction.
     pub fn predicted(self, of: &Predicted) -> Option<toile_core::cost::Estimate> {
         match self {
-            Figure::Wall => of.wall_s,
-            Figure::Cpu => of.cpu_s,
-            Figure::Peak => of.peak_bytes,
-            Figure::Kept => of.kept_bytes,
+            CostFigure::Wall => of.wall_s,
+            CostFigure::Cpu => of.cpu_s,
+            CostFigure::Peak => of.peak_bytes,
+            CostFigure::Kept => of.kept_bytes,
         }
     }
 
     /// In words.
     pub fn as_str(self) -> &'static str {
         match self {
-            Figure::Wall => "wall time",
-            Figure::Cpu => "processor time",
-            Figure::Peak => "peak memory",
-            Figure::Kept => "memory kept",
+            CostFigure::Wall => "wall time",
+            CostFigure::Cpu => "processor time",
+            CostFigure::Peak => "peak memory",
+            CostFigure::Kept => "memory kept",
         }
     }
 }
 
 /// The machine that figures hold for.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Host {
+pub struct HostMachine {
     /// The processor, as the system calls it.
     pub cpu: String,
     /// Cores that the system offers.
     pub cores: usize,
 }
 
-impl Host {
+impl HostMachine {
     /// This one.
     pub fn here() -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let model = info.lines().find_map(|l| l.strip_prefix("model name")?.split_once(": "));
         let cpu = model.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned());
-        Host { cpu, cores: std::thread::available_parallelism().map_or(1, usize::from) }
+        HostMachine { cpu, cores: std::thread::available_parallelism().map_or(1, usize::from) }
     }
 }
 
-impl std::fmt::Display for Host {
+impl std::fmt::Display for HostMachine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}, {} cores", self.cpu, self.cores)
     }

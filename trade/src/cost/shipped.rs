@@ -3,7 +3,7 @@
 //! The first line says where and with which program the records were made, each further line is one
 //! of them. A damaged line loses itself alone.
 
-use super::record::{CostRecord, Host};
+use super::record::{CostRecord, HostMachine};
 use crate::digits::to_digits;
 use serde::{Deserialize, Serialize};
 use toile_core::cost::Size;
@@ -17,10 +17,10 @@ const SHIPPED: &str = include_str!("shipped.jsonl");
 
 /// The first line.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-struct Head {
+struct ShippedHeader {
     scheme: u32,
     toile: String,
-    host: Host,
+    host: HostMachine,
     date: String,
 }
 
@@ -30,7 +30,7 @@ pub struct Collection {
     /// The program's version.
     pub toile: String,
     /// The machine.
-    pub host: Host,
+    pub host: HostMachine,
     /// The day, `2026-11-22`.
     pub date: String,
     /// What stages took.
@@ -43,13 +43,13 @@ impl Collection {
     /// Records of this machine and program, made today.
     pub fn here(records: Vec<CostRecord>) -> Self {
         let toile = env!("CARGO_PKG_VERSION").to_owned();
-        Collection { toile, host: Host::here(), date: crate::record::today(), records, damaged: 0 }
+        Collection { toile, host: HostMachine::here(), date: crate::record::today(), records, damaged: 0 }
     }
 
     /// As text.
     pub fn to_text(&self) -> String {
         let (toile, host, date) = (self.toile.clone(), self.host.clone(), self.date.clone());
-        let head = serde_json::to_string(&Head { scheme: SCHEME, toile, host, date });
+        let head = serde_json::to_string(&ShippedHeader { scheme: SCHEME, toile, host, date });
         let lines = self.records.iter().map(serde_json::to_string);
         // Names and finite numbers: writing them to memory cannot fail.
         std::iter::once(head).chain(lines).filter_map(Result::ok).map(|line| line + "\n").collect()
@@ -83,7 +83,7 @@ pub fn parse(text: &str) -> Result<Collection, &'static str> {
         return Err("is longer than 8 MB");
     }
     let mut lines = text.lines();
-    let head: Head = lines.next().and_then(|l| serde_json::from_str(l).ok()).ok_or("is damaged")?;
+    let head: ShippedHeader = lines.next().and_then(|l| serde_json::from_str(l).ok()).ok_or("is damaged")?;
     if head.scheme != SCHEME {
         return Err("was kept by another version");
     }

@@ -4,7 +4,7 @@
 //! written whole beside its place and renamed. Two runs that end at once may lose the records of
 //! one of them.
 
-use super::record::{CostRecord, Host};
+use super::record::{CostRecord, HostMachine};
 use super::shipped::{Collection, LONGEST, parse};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ impl CostStore {
 
     /// Reads it; nothing where there is no file yet, and nothing with a warning where it is of no
     /// use.
-    pub fn open(&self, host: &Host) -> Opened {
+    pub fn open(&self, host: &HostMachine) -> Opened {
         let path = self.folder.join(FILE);
         let refused = |why: &str| Opened {
             records: Vec::new(),
@@ -71,7 +71,7 @@ impl CostStore {
     /// Adds the records of a run; what is there of another machine or program makes place.
     ///
     /// Errors: the folder cannot be written.
-    pub fn add(&self, host: &Host, new: Vec<CostRecord>) -> Result<(), StageError> {
+    pub fn add(&self, host: &HostMachine, new: Vec<CostRecord>) -> Result<(), StageError> {
         let mut records = self.open(host).records;
         records.extend(new);
         let collection = Collection { host: host.clone(), ..Collection::here(latest(records)) };

@@ -1,6 +1,6 @@
 //! What people read of forecasts.
 
-use super::check::{Check, Tally, Verdict, is_right};
+use super::check::{PredictionCheck, StageVerdict, Tally, is_right};
 use super::predict::{Forecast, total};
 use toile_core::cost::{Estimate, Predicted, Used};
 use toile_pipeline::cache::Bytes;
@@ -79,7 +79,7 @@ fn share(tally: &Tally) -> String {
 }
 
 /// The table of a check.
-pub fn check_lines(check: &Check) -> Vec<String> {
+pub fn check_lines(check: &PredictionCheck) -> Vec<String> {
     let (write, least): (fn(f64) -> String, _) =
         if check.figure.is_time() { (time, "1 ms") } else { (bytes, "1 MB") };
     let mut lines = vec![
@@ -101,7 +101,7 @@ pub fn check_lines(check: &Check) -> Vec<String> {
     lines
 }
 
-fn verdict(v: &Verdict, fact: &str) -> String {
+fn verdict(v: &StageVerdict, fact: &str) -> String {
     let at = |share: f64| {
         let i = ((v.ratios.len().saturating_sub(1)) as f64 * share).round() as usize;
         v.ratios.get(i).map_or_else(|| "-".to_owned(), |r| format!("{r:.2}"))

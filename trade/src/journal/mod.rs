@@ -24,7 +24,7 @@ use toile_pipeline::write_files;
 
 /// What kind of record it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Kind {
+pub(crate) struct JournalKind {
     /// The file's name, without its ending.
     pub(crate) name: &'static str,
     /// The version of the form.
@@ -33,7 +33,7 @@ pub(crate) struct Kind {
     pub(crate) changed: &'static str,
 }
 
-impl Kind {
+impl JournalKind {
     fn file(&self) -> String {
         format!("{}.jsonl", self.name)
     }
@@ -41,7 +41,7 @@ impl Kind {
 
 /// The first line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Head<H> {
+pub(crate) struct JournalHeader<H> {
     /// The version of the form.
     scheme: u32,
     /// The program's version.
@@ -55,9 +55,9 @@ pub(crate) struct Head<H> {
     pub(crate) on: H,
 }
 
-impl<H> Head<H> {
+impl<H> JournalHeader<H> {
     /// Whether a later session may go on; the reason where it may not.
-    fn fits(&self, kind: Kind, base: &str) -> Result<(), String> {
+    fn fits(&self, kind: JournalKind, base: &str) -> Result<(), String> {
         if self.scheme != kind.scheme || self.toile != env!("CARGO_PKG_VERSION") {
             return Err(format!("it was made by version {}", self.toile));
         }
@@ -75,9 +75,9 @@ impl<H> Head<H> {
 #[derive(Debug)]
 pub(crate) struct Journal<H, L> {
     folder: PathBuf,
-    kind: Kind,
+    kind: JournalKind,
     /// The first line.
-    pub(crate) head: Head<H>,
+    pub(crate) head: JournalHeader<H>,
     /// The steps.
     pub(crate) lines: Vec<L>,
     /// Lines that were left out.
@@ -88,18 +88,24 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
     /// A new record; nothing is written yet.
     pub(crate) fn new(
         folder: &Path,
-        kind: Kind,
+        kind: JournalKind,
         base: String,
         reads: BTreeMap<String, Option<String>>,
         on: H,
     ) -> Self {
-        let head = Head { scheme: kind.scheme, toile: env!("CARGO_PKG_VERSION").to_owned(), base, reads, on };
+        let head = JournalHeader {
+            scheme: kind.scheme,
+            toile: env!("CARGO_PKG_VERSION").to_owned(),
+            base,
+            reads,
+            on,
+        };
         Journal { folder: folder.to_owned(), kind, head, lines: Vec::new(), damaged: Vec::new() }
     }
 
     /// The record of an earlier session of the same pipeline; none where there is none, or the
     /// reason why what is there is not gone on from.
-    pub(crate) fn open(folder: &Path, kind: Kind, base: &str) -> Result<Option<Self>, String> {
+    pub(crate) fn open(folder: &Path, kind: JournalKind, base: &str) -> Result<Option<Self>, String> {
         let path = folder.join(kind.file());
         let bytes = match read_file(&path) {
             Ok(bytes) => bytes,
@@ -107,7 +113,7 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
             Err(e) => return Err(format!("it cannot be read: {e}")),
         };
         let mut lines = bytes.split(|b| *b == b'\n');
-        let head: Head<H> = lines
+        let head: JournalHeader<H> = lines
             .next()
             .and_then(|l| serde_json::from_slice(l).ok())
             .ok_or("it is of another version or damaged")?;
@@ -124,7 +130,7 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
     }
 
     /// Puts a file aside that is not gone on from.
-    pub(crate) fn put_aside(folder: &Path, kind: Kind) {
+    pub(crate) fn put_aside(folder: &Path, kind: JournalKind) {
         let _ = std::fs::rename(folder.join(kind.file()), folder.join(format!("{}.old.jsonl", kind.name)));
     }
 
@@ -132,7 +138,7 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
     /// out of it is told.
     pub(crate) fn taken_up(
         folder: &Path,
-        kind: Kind,
+        kind: JournalKind,
         base: &str,
         tell: &mut dyn FnMut(String),
     ) -> Option<Self> {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::digest::content;
 
-const KIND: Kind = Kind { name: "steps", scheme: 3, changed: "the pipeline has changed" };
+const KIND: JournalKind = JournalKind { name: "steps", scheme: 3, changed: "the pipeline has changed" };
 
 /// What the record rests on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -5,7 +5,7 @@
 //! and the last solver are turned: the first mesh picks the folds, and another one would pick
 //! others. Their ranges are factors around the pipeline's own values.
 
-use crate::knobs::dial::{Form, is_spatial, numeric};
+use crate::knobs::dial::{NumberForm, is_spatial, numeric};
 use crate::knobs::knob::{KnobSpec, Number, Values};
 use crate::knobs::split::field;
 use toile_core::{Node, ParamDoc, Registry, Role};
@@ -45,7 +45,8 @@ fn is_turned(node: &Node) -> bool {
 /// The resolutions of a stage, by factors around its own; whole numbers by fewer.
 fn ends(node: &Node, factors: [f64; 2]) -> Vec<KnobSpec> {
     let ends = node.card.params.iter().filter(|p| p.trades && p.finer.is_some());
-    let of = |p: &ParamDoc| if matches!(Form::of(p), Some(Form::Whole)) { factors } else { OTHERS };
+    let of =
+        |p: &ParamDoc| if matches!(NumberForm::of(p), Some(NumberForm::Whole)) { factors } else { OTHERS };
     ends.filter_map(|p| range(node, &node.id, p.name, of(p))).collect()
 }
 
@@ -65,10 +66,10 @@ fn choice(node: &Node, key: &str, registry: &Registry) -> Option<KnobSpec> {
 fn range(node: &Node, owner: &str, param: &str, factors: [f64; 2]) -> Option<KnobSpec> {
     let doc = node.card.params.iter().find(|p| p.name == param)?;
     let own = numeric(field(&node.stage.params(), param)?)?;
-    let number = |x: f64| match Form::of(doc)? {
-        Form::Length => Some(Number::Length(x)),
-        Form::Whole => Some(Number::Plain(x.round())),
-        Form::Real => Some(Number::Plain(x)),
+    let number = |x: f64| match NumberForm::of(doc)? {
+        NumberForm::Length => Some(Number::Length(x)),
+        NumberForm::Whole => Some(Number::Plain(x.round())),
+        NumberForm::Real => Some(Number::Plain(x)),
     };
     let bound =
         |factor: f64| number((own * factor).clamp(doc.min.unwrap_or(f64::MIN), doc.max.unwrap_or(f64::MAX)));

@@ -20,13 +20,13 @@ pub enum Dial {
         /// True where it is turned by factors.
         log: bool,
         /// How a number is written.
-        form: Form,
+        form: NumberForm,
     },
 }
 
 /// How a number stands in a pipeline file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
+pub enum NumberForm {
     /// `"12 mm"`.
     Length,
     /// `12`.
@@ -108,22 +108,22 @@ fn is_same(a: &str, b: &str) -> bool {
     a == b || numeric(a).is_some_and(|x| numeric(b) == Some(x))
 }
 
-impl Form {
+impl NumberForm {
     /// A number as it stands in a file.
     pub fn write(self, x: f64) -> String {
         match self {
-            Form::Length => format!("\"{}\"", Length::m(x)),
-            Form::Whole => format!("{}", x.round()),
-            Form::Real => format!("{x:?}"),
+            NumberForm::Length => format!("\"{}\"", Length::m(x)),
+            NumberForm::Whole => format!("{}", x.round()),
+            NumberForm::Real => format!("{x:?}"),
         }
     }
 
     /// How a parameter is written; none for one that is no number.
-    pub fn of(doc: &ParamDoc) -> Option<Form> {
+    pub fn of(doc: &ParamDoc) -> Option<NumberForm> {
         match doc.kind.trim_end_matches(" (or None)") {
-            "length" => Some(Form::Length),
-            "whole number" => Some(Form::Whole),
-            "number" => Some(Form::Real),
+            "length" => Some(NumberForm::Length),
+            "whole number" => Some(NumberForm::Whole),
+            "number" => Some(NumberForm::Real),
             _ => None,
         }
     }
@@ -147,8 +147,8 @@ pub(crate) fn way(doc: &ParamDoc) -> Option<f64> {
 /// True of a resolution in space, such as an edge length or the parts of an edge: the reference
 /// must have a finer one than what it judges. Steps and tolerances may be equal.
 pub(crate) fn is_spatial(doc: &ParamDoc) -> bool {
-    let parts = Form::of(doc) == Some(Form::Whole) && doc.unit == "parts";
-    doc.finer.is_some() && (Form::of(doc) == Some(Form::Length) || parts)
+    let parts = NumberForm::of(doc) == Some(NumberForm::Whole) && doc.unit == "parts";
+    doc.finer.is_some() && (NumberForm::of(doc) == Some(NumberForm::Length) || parts)
 }
 
 /// To three digits, so that settings that are alike become equal.
@@ -168,8 +168,8 @@ pub(crate) fn is_finer(way: f64, value: f64, other: f64, factor: f64) -> bool {
 pub(crate) fn dial(key: &str, doc: &ParamDoc, values: &Values) -> Result<Dial, StageError> {
     match values {
         Values::List(list) => {
-            let text = |v: &String| match Form::of(doc) {
-                Some(Form::Length) if v.parse::<Length>().is_ok() => format!("\"{v}\""),
+            let text = |v: &String| match NumberForm::of(doc) {
+                Some(NumberForm::Length) if v.parse::<Length>().is_ok() => format!("\"{v}\""),
                 _ => v.clone(),
             };
             let list: Vec<String> = list.iter().map(text).collect();
@@ -182,10 +182,10 @@ pub(crate) fn dial(key: &str, doc: &ParamDoc, values: &Values) -> Result<Dial, S
 
 fn range(key: &str, doc: &ParamDoc, lo: Number, hi: Number) -> Result<Dial, StageError> {
     let no_range = || fault(format!("`{key}` is {}, which has no range", doc.kind));
-    let form = Form::of(doc).ok_or_else(|| no_range().hint("list its values with commas"))?;
-    if (form == Form::Length) != matches!(hi, Number::Length(_)) {
+    let form = NumberForm::of(doc).ok_or_else(|| no_range().hint("list its values with commas"))?;
+    if (form == NumberForm::Length) != matches!(hi, Number::Length(_)) {
         let unit = "write the unit, like `6..24 mm`";
-        let hint = if form == Form::Length { unit } else { "write bare numbers" };
+        let hint = if form == NumberForm::Length { unit } else { "write bare numbers" };
         return Err(fault(format!("`{key}` is a {}", doc.kind)).hint(hint));
     }
     let (lo, hi) = (lo.value(), hi.value());

@@ -1,7 +1,7 @@
 //! The work-precision picture: time against distance, both logarithmic, with the front.
 
 use super::axis::Axis;
-use super::mark::{Anchor, GRID, INK, Mark, PALE, line, plain, text};
+use super::mark::{Anchor, GRID, INK, PALE, PlotMark, line, plain, text};
 use crate::front::Cost;
 use crate::record::{Measured, Trade};
 use std::collections::BTreeSet;
@@ -21,7 +21,7 @@ fn drawn(m: &Measured, trade: &Trade) -> Cost {
 }
 
 /// The picture of a measurement.
-pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
+pub(crate) fn marks(trade: &Trade) -> Vec<PlotMark> {
     let shown: Vec<(usize, &Measured)> =
         trade.points.iter().enumerate().filter_map(|(i, p)| Some((i, p.measured()?))).collect();
     let floor = trade.reference.floor_mm().map(|f| f.max(LEAST));
@@ -37,7 +37,7 @@ pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
         let at = [x.at(cost(m).time), y.at(cost(m).error)];
         let colour = kinds.iter().position(|k| *k == kind(trade, *i)).map_or(INK, colour);
         let on_front = trade.front.contains(i);
-        marks.push(Mark::Dot { at, radius: if on_front { 6.5 } else { 4.5 }, colour, hollow: !m.sound });
+        marks.push(PlotMark::Dot { at, radius: if on_front { 6.5 } else { 4.5 }, colour, hollow: !m.sound });
         if on_front || shown.len() <= MOST_NUMBERS {
             marks.push(text([at[0] + 9.0, at[1] - 7.0], Anchor::Start, &(i + 1).to_string(), INK));
         }
@@ -47,12 +47,12 @@ pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
 }
 
 /// The line below which errors mean nothing.
-fn known_to(y: f64) -> [Mark; 2] {
+fn known_to(y: f64) -> [PlotMark; 2] {
     let words = text([FRAME[0] + 8.0, y - 6.0], Anchor::Start, "the reference is known to this", PALE);
     [line([FRAME[0], y], [FRAME[2], y], 1.5, PALE, true), words]
 }
 
-fn axes(x: &Axis, y: &Axis, trade: &Trade) -> Vec<Mark> {
+fn axes(x: &Axis, y: &Axis, trade: &Trade) -> Vec<PlotMark> {
     let mut marks = Vec::new();
     for t in x.ticks() {
         marks.push(line([x.at(t), FRAME[1]], [x.at(t), FRAME[3]], 1.0, GRID, false));
@@ -73,7 +73,7 @@ fn axes(x: &Axis, y: &Axis, trade: &Trade) -> Vec<Mark> {
         "mm from the reference, 95 % of the surface",
         INK,
     ));
-    marks.push(Mark::Text {
+    marks.push(PlotMark::Text {
         at: [FRAME[2], 26.0],
         anchor: Anchor::End,
         text: trade.pipeline.clone(),
@@ -84,7 +84,7 @@ fn axes(x: &Axis, y: &Axis, trade: &Trade) -> Vec<Mark> {
 }
 
 /// The front as a stair: what can be had for a time.
-fn steps(trade: &Trade, x: &Axis, y: &Axis) -> Vec<Mark> {
+fn steps(trade: &Trade, x: &Axis, y: &Axis) -> Vec<PlotMark> {
     let at = |i: &usize| {
         let cost = drawn(trade.points[*i].measured()?, trade);
         Some([x.at(cost.time), y.at(cost.error)])
@@ -118,13 +118,17 @@ fn colour(i: usize) -> [u8; 3] {
     toile_stages::render::PANEL_COLOURS[i % toile_stages::render::PANEL_COLOURS.len()]
 }
 
-fn legend(kinds: &[String], some_miss: bool) -> Vec<Mark> {
+fn legend(kinds: &[String], some_miss: bool) -> Vec<PlotMark> {
     let named = kinds.iter().enumerate().filter(|(_, k)| !k.is_empty());
-    let mut marks: Vec<Mark> = named
+    let mut marks: Vec<PlotMark> = named
         .flat_map(|(i, k)| {
             let y = FRAME[1] + 18.0 + 20.0 * i as f64;
-            let dot =
-                Mark::Dot { at: [FRAME[2] - 14.0, y - 5.0], radius: 5.0, colour: colour(i), hollow: false };
+            let dot = PlotMark::Dot {
+                at: [FRAME[2] - 14.0, y - 5.0],
+                radius: 5.0,
+                colour: colour(i),
+                hollow: false,
+            };
             [dot, text([FRAME[2] - 28.0, y], Anchor::End, k, INK)]
         })
         .collect();
@@ -132,7 +136,7 @@ fn legend(kinds: &[String], some_miss: bool) -> Vec<Mark> {
         return marks;
     }
     let y = FRAME[1] + 18.0 + 20.0 * kinds.iter().filter(|k| !k.is_empty()).count() as f64;
-    marks.push(Mark::Dot { at: [FRAME[2] - 14.0, y - 5.0], radius: 5.0, colour: PALE, hollow: true });
+    marks.push(PlotMark::Dot { at: [FRAME[2] - 14.0, y - 5.0], radius: 5.0, colour: PALE, hollow: true });
     marks.push(text([FRAME[2] - 28.0, y], Anchor::End, "misses a quality limit", PALE));
     marks
 }

@@ -13,7 +13,7 @@ pub const PALE: [u8; 3] = [150, 156, 164];
 
 /// Something drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Mark {
+pub enum PlotMark {
     /// A line; dashed or not.
     Line {
         /// px.
@@ -70,13 +70,13 @@ pub enum Anchor {
 }
 
 /// A line.
-pub fn line(a: [f64; 2], b: [f64; 2], width: f64, colour: [u8; 3], dashed: bool) -> Mark {
-    Mark::Line { ends: [a, b], width, colour, dashed }
+pub fn line(a: [f64; 2], b: [f64; 2], width: f64, colour: [u8; 3], dashed: bool) -> PlotMark {
+    PlotMark::Line { ends: [a, b], width, colour, dashed }
 }
 
 /// A text of the usual size.
-pub fn text(at: [f64; 2], anchor: Anchor, text: &str, colour: [u8; 3]) -> Mark {
-    Mark::Text { at, anchor, text: text.to_owned(), colour, large: false }
+pub fn text(at: [f64; 2], anchor: Anchor, text: &str, colour: [u8; 3]) -> PlotMark {
+    PlotMark::Text { at, anchor, text: text.to_owned(), colour, large: false }
 }
 
 /// A tick's number without needless digits.

@@ -1,6 +1,6 @@
 //! Marks as a PNG: lines and dots at three times the size, brought down, then the glyphs.
 
-use super::mark::{Anchor, Mark, SIZE};
+use super::mark::{Anchor, PlotMark, SIZE};
 use image::imageops::{FilterType, resize};
 use image::{ImageFormat, Rgb, RgbImage};
 use imageproc::drawing::{draw_filled_circle_mut, draw_filled_rect_mut, draw_polygon_mut};
@@ -15,7 +15,7 @@ const SHARP: f64 = 3.0;
 const DASH: [f64; 2] = [6.0, 5.0];
 
 /// The file; empty where it cannot be encoded.
-pub fn png(marks: &[Mark]) -> Vec<u8> {
+pub fn png(marks: &[PlotMark]) -> Vec<u8> {
     let large = SIZE.map(|s| (f64::from(s) * SHARP) as u32);
     let mut picture = RgbImage::from_pixel(large[0], large[1], Rgb([255; 3]));
     marks.iter().for_each(|m| shape(&mut picture, m));
@@ -28,10 +28,12 @@ pub fn png(marks: &[Mark]) -> Vec<u8> {
     }
 }
 
-fn shape(picture: &mut RgbImage, mark: &Mark) {
+fn shape(picture: &mut RgbImage, mark: &PlotMark) {
     match mark {
-        Mark::Line { ends: [a, b], width, colour, dashed: false } => stroke(picture, *a, *b, *width, *colour),
-        Mark::Line { ends: [a, b], width, colour, dashed: true } => {
+        PlotMark::Line { ends: [a, b], width, colour, dashed: false } => {
+            stroke(picture, *a, *b, *width, *colour)
+        }
+        PlotMark::Line { ends: [a, b], width, colour, dashed: true } => {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             let at = |d: f64| [0, 1].map(|k| a[k] + (b[k] - a[k]) * (d / length).min(1.0));
             let dashes = (length / (DASH[0] + DASH[1])).ceil() as usize;
@@ -40,15 +42,15 @@ fn shape(picture: &mut RgbImage, mark: &Mark) {
                 stroke(picture, at(from), at(from + DASH[0]), *width, *colour);
             }
         }
-        Mark::Rect { corners: [a, b], colour } => fill(picture, *a, *b, *colour),
-        Mark::Dot { at, radius, colour, hollow } => {
+        PlotMark::Rect { corners: [a, b], colour } => fill(picture, *a, *b, *colour),
+        PlotMark::Dot { at, radius, colour, hollow } => {
             let centre = at.map(|c| (c * SHARP).round() as i32).into();
             let white = Rgb([255; 3]);
             let (rim, fill) = if *hollow { (Rgb(*colour), white) } else { (white, Rgb(*colour)) };
             draw_filled_circle_mut(picture, centre, ((radius + 0.75) * SHARP) as i32, rim);
             draw_filled_circle_mut(picture, centre, ((radius - 0.75) * SHARP) as i32, fill);
         }
-        Mark::Text { .. } => {}
+        PlotMark::Text { .. } => {}
     }
 }
 
@@ -79,8 +81,8 @@ fn stroke(picture: &mut RgbImage, a: [f64; 2], b: [f64; 2], width: f64, colour: 
     }
 }
 
-fn letters(picture: &mut RgbImage, mark: &Mark) {
-    let Mark::Text { at, anchor, text, colour, large } = mark else { return };
+fn letters(picture: &mut RgbImage, mark: &PlotMark) {
+    let PlotMark::Text { at, anchor, text, colour, large } = mark else { return };
     let size = if *large { RasterHeight::Size20 } else { RasterHeight::Size16 };
     let step = get_raster_width(FontWeight::Regular, size);
     let wide = (step * text.chars().count()) as f64;

@@ -1,9 +1,9 @@
 //! Marks as an SVG document.
 
-use super::mark::{Anchor, Mark, SIZE};
+use super::mark::{Anchor, PlotMark, SIZE};
 
 /// The document.
-pub fn svg(marks: &[Mark]) -> String {
+pub fn svg(marks: &[PlotMark]) -> String {
     let [w, h] = SIZE;
     let mut s = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \
@@ -14,12 +14,14 @@ pub fn svg(marks: &[Mark]) -> String {
     s
 }
 
-fn mark(mark: &Mark) -> String {
+fn mark(mark: &PlotMark) -> String {
     match mark {
-        Mark::Line { ends, width, colour, dashed } => line(*ends, *width, hex(colour), *dashed),
-        Mark::Rect { corners, colour } => rect(*corners, hex(colour)),
-        Mark::Dot { at, radius, colour, hollow } => dot(*at, *radius, hex(colour), *hollow),
-        Mark::Text { at, anchor, text, colour, large } => letters(*at, *anchor, text, hex(colour), *large),
+        PlotMark::Line { ends, width, colour, dashed } => line(*ends, *width, hex(colour), *dashed),
+        PlotMark::Rect { corners, colour } => rect(*corners, hex(colour)),
+        PlotMark::Dot { at, radius, colour, hollow } => dot(*at, *radius, hex(colour), *hollow),
+        PlotMark::Text { at, anchor, text, colour, large } => {
+            letters(*at, *anchor, text, hex(colour), *large)
+        }
     }
 }
 

@@ -8,21 +8,21 @@
 mod tests;
 
 use crate::record::{Clock, Machine};
-use crate::tune::{Proof, Prover, Wish, overrides, refusal};
+use crate::tune::{Prover, SettingProof, Wish, overrides, refusal};
 use std::str::FromStr;
 use toile_core::{ErrorCode, Length, StageError};
 use toile_pipeline::{Basis, Quality, fill_qualities, load, without_qualities};
 
 /// A quality that is asked for: `Draft=10 mm`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Asked {
+pub struct AskedQuality {
     /// Its name.
     pub name: String,
     /// The error that it keeps.
     pub max_error: Length,
 }
 
-impl FromStr for Asked {
+impl FromStr for AskedQuality {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -33,13 +33,13 @@ impl FromStr for Asked {
         }
         let max_error: Length = length.trim().parse()?;
         match max_error.metres() > 0.0 {
-            true => Ok(Asked { name: name.trim().to_owned(), max_error }),
+            true => Ok(AskedQuality { name: name.trim().to_owned(), max_error }),
             false => Err(format!("`{}` is not above zero", length.trim())),
         }
     }
 }
 
-impl Asked {
+impl AskedQuality {
     /// What is asked of its setting.
     pub fn wish(&self) -> Wish {
         Wish { max_error_mm: Some(millimetres(self.max_error)), max_time_s: None }
@@ -55,9 +55,9 @@ fn millimetres(length: Length) -> f64 {
 #[derive(Debug, Default)]
 pub struct Proved {
     /// Those that are kept, with their proofs.
-    pub kept: Vec<(Asked, Proof)>,
+    pub kept: Vec<(AskedQuality, SettingProof)>,
     /// Those that no setting keeps, with the reason.
-    pub refused: Vec<(Asked, StageError)>,
+    pub refused: Vec<(AskedQuality, StageError)>,
 }
 
 /// Proves a setting for each of the qualities, in their order.
@@ -65,7 +65,7 @@ pub struct Proved {
 /// Errors: the reference does not run; stopped by the user.
 pub fn prove(
     prover: &Prover<'_>,
-    asked: &[Asked],
+    asked: &[AskedQuality],
     tell: &mut dyn FnMut(String),
 ) -> Result<Proved, StageError> {
     let mut proved = Proved::default();
@@ -95,13 +95,17 @@ pub fn prove(
 /// that are there already stay, but where `--set` changes the file that they were measured on.
 ///
 /// Errors: the settings do not fit the file any more.
-pub fn written(prover: &Prover<'_>, kept: &[(Asked, Proof)], date: &str) -> Result<String, StageError> {
+pub fn written(
+    prover: &Prover<'_>,
+    kept: &[(AskedQuality, SettingProof)],
+    date: &str,
+) -> Result<String, StageError> {
     let source = prover.source;
     let invalid = |words: String| StageError::invalid(words);
     let base = source.load(&[]).map_err(|f| invalid(f.to_string()))?.text;
     let is_same = source.set.is_empty() && source.quality.is_none();
     let base = if is_same { base } else { without_qualities(&base).map_err(|f| invalid(f.message))? };
-    let one = |(asked, proof): &(Asked, Proof)| {
+    let one = |(asked, proof): &(AskedQuality, SettingProof)| {
         let quality = quality(prover, asked, proof, date);
         let measured_on = load(&base, &source.file, &source.base, source.registry, &quality.set);
         let measured_on = measured_on.map_err(|f| invalid(f.to_string()))?;
@@ -113,7 +117,7 @@ pub fn written(prover: &Prover<'_>, kept: &[(Asked, Proof)], date: &str) -> Resu
     Ok(text)
 }
 
-fn quality(prover: &Prover<'_>, asked: &Asked, proof: &Proof, date: &str) -> Quality {
+fn quality(prover: &Prover<'_>, asked: &AskedQuality, proof: &SettingProof, date: &str) -> Quality {
     let set = overrides(&prover.trade.points[proof.point].overrides);
     let floor = prover.trade.reference.floor_mm();
     let measured = words(proof, floor, env!("CARGO_PKG_VERSION"), &Machine::here(), date);
@@ -121,7 +125,7 @@ fn quality(prover: &Prover<'_>, asked: &Asked, proof: &Proof, date: &str) -> Qua
 }
 
 /// What a proof found, in a line.
-fn words(proof: &Proof, floor: Option<f64>, toile: &str, machine: &Machine, date: &str) -> String {
+fn words(proof: &SettingProof, floor: Option<f64>, toile: &str, machine: &Machine, date: &str) -> String {
     let starts = match proof.starts.len() {
         0 => "a fresh run".to_owned(),
         n => format!("the worst of a fresh run and {n} moved starts"),

@@ -7,9 +7,9 @@ use crate::record::Measured;
 
 #[test]
 fn a_quality_is_a_name_and_a_length() {
-    let asked: Asked = " Very-fine 2 = 1.5 mm".parse().unwrap();
+    let asked: AskedQuality = " Very-fine 2 = 1.5 mm".parse().unwrap();
     assert_eq!((asked.name.as_str(), asked.wish().max_error_mm), ("Very-fine 2", Some(1.5)));
-    let refused = |text: &str| text.parse::<Asked>().unwrap_err();
+    let refused = |text: &str| text.parse::<AskedQuality>().unwrap_err();
     let form = |text: &str| format!("`{text}` is no quality; write NAME=LENGTH, like `Draft=10 mm`");
     for text in ["Draft", "=3 mm", "a.b=3 mm", ""] {
         assert_eq!(refused(text), form(text));
@@ -37,7 +37,7 @@ fn what_is_kept_is_the_worst_of_the_fresh_run_and_the_starts() {
         repeatable: true,
     };
     let machine = Machine { system: "linux x86_64".into(), cores: 2, threads: 2, load: None };
-    let mut proof = Proof { point: 0, fresh, starts: vec![far(2.0), far(3.917)], failed: Vec::new() };
+    let mut proof = SettingProof { point: 0, fresh, starts: vec![far(2.0), far(3.917)], failed: Vec::new() };
     assert_eq!(
         words(&proof, Some(1.204), "0.1.0", &machine, "2026-11-22"),
         "2026-11-22: 95 % of the surface within 3.92 mm of the reference (itself known to 1.20 mm), the worst of a fresh run and 2 moved \

@@ -10,8 +10,8 @@ pub use clock::Clock;
 pub use day::today;
 pub use machine::Machine;
 pub(crate) use point::median;
-pub use point::{Measured, Outcome, Point};
-pub use reference::{Level, Neighbours, Order, OwnSpread, Reference};
+pub use point::{Measured, Point, SettingOutcome};
+pub use reference::{NeighbourLevels, Order, OwnSpread, Reference, ReferenceLevel};
 
 use crate::front::{Cost, front};
 use serde::{Deserialize, Serialize};

@@ -18,14 +18,14 @@ pub struct Point {
     /// Overrides of the pipeline file that make it.
     pub overrides: Vec<(String, String)>,
     /// What came of it.
-    pub outcome: Outcome,
+    pub outcome: SettingOutcome,
 }
 
 impl Point {
     /// Its figures, where it ran.
     pub fn measured(&self) -> Option<&Measured> {
         match &self.outcome {
-            Outcome::Measured(m) => Some(m),
+            SettingOutcome::Measured(m) => Some(m),
             _ => None,
         }
     }
@@ -34,7 +34,7 @@ impl Point {
 /// What came of a setting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum SettingOutcome {
     /// It ran.
     Measured(Box<Measured>),
     /// A stage refused or failed.
@@ -51,10 +51,10 @@ pub enum Outcome {
     },
 }
 
-impl Outcome {
+impl SettingOutcome {
     /// Whether a run with that limit would end no later.
     pub(crate) fn stands(&self, limit: Duration) -> bool {
-        !matches!(self, Outcome::OverLimit { seconds } if *seconds < 0.99 * limit.as_secs_f64())
+        !matches!(self, SettingOutcome::OverLimit { seconds } if *seconds < 0.99 * limit.as_secs_f64())
     }
 }
 

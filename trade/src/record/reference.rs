@@ -11,7 +11,7 @@ pub struct Reference {
     /// Factor from level to level.
     pub ratio: f64,
     /// From the pipeline's own setting to the reference, the last.
-    pub levels: Vec<Level>,
+    pub levels: Vec<ReferenceLevel>,
     /// Of the mean distance between levels; none where it does not shrink.
     pub mean: Option<Order>,
     /// Of the distance that 95 % keep.
@@ -25,14 +25,14 @@ pub struct Reference {
     /// How far it ends from neighbouring resolutions; none where none was tried, or by an earlier
     /// version.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub neighbours: Option<Neighbours>,
+    pub neighbours: Option<NeighbourLevels>,
     /// Of the reference garment.
     pub ease_mm: BTreeMap<String, f64>,
 }
 
 /// One refinement of the reference.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Level {
+pub struct ReferenceLevel {
     /// What is refined, and how far.
     pub setting: Setting,
     /// Overrides of the pipeline file that make it.
@@ -88,7 +88,7 @@ impl OwnSpread {
 
 /// How much a level differs from ones that are a fiftieth finer and coarser.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Neighbours {
+pub struct NeighbourLevels {
     /// The level.
     pub level: usize,
     /// Distance of each from the level.
@@ -97,7 +97,7 @@ pub struct Neighbours {
     pub failed: Vec<String>,
 }
 
-impl Neighbours {
+impl NeighbourLevels {
     /// The worst of them: 95 % of the surface, millimetres.
     pub fn p95(&self) -> Option<f64> {
         self.apart_mm.iter().map(|m| m.p95).reduce(f64::max)

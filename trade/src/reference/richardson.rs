@@ -37,7 +37,7 @@ pub struct Convergence {
 
 /// A refinement.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct RefinementStep {
     /// How far it moved the result.
     pub distance: f64,
     /// By which factor it is finer than the one before, above 1.
@@ -47,10 +47,10 @@ pub struct Step {
 /// Order and estimate from the last two refinements.
 ///
 /// None with fewer than two, or where they do not shrink.
-pub fn convergence(steps: &[Step]) -> Option<Convergence> {
+pub fn convergence(steps: &[RefinementStep]) -> Option<Convergence> {
     let [.., coarse, fine] = steps else { return None };
     let last = &steps[steps.len().saturating_sub(3)..];
-    let pace = |s: &Step| s.distance / s.ratio.ln();
+    let pace = |s: &RefinementStep| s.distance / s.ratio.ln();
     if !last.windows(2).all(|w| pace(&w[1]) < pace(&w[0]) || w[1].distance == 0.0) {
         return None;
     }
@@ -64,7 +64,7 @@ pub fn convergence(steps: &[Step]) -> Option<Convergence> {
 }
 
 /// What the finest result lacks if its error falls with the first power of the resolution.
-pub fn at_first_order(last: Step) -> f64 {
+pub fn at_first_order(last: RefinementStep) -> f64 {
     last.distance / (last.ratio - 1.0)
 }
 
@@ -86,19 +86,19 @@ mod tests {
     use super::*;
 
     /// Distances of f(h) = 3 + c h^p at h = 1, 1/r, 1/r^2, ...
-    fn series(c: f64, p: f64, r: f64) -> (Vec<Step>, f64) {
+    fn series(c: f64, p: f64, r: f64) -> (Vec<RefinementStep>, f64) {
         meshes(c, p, &[1.0, r, r * r, r * r * r])
     }
 
     /// Distances of f(h) = 3 + c h^p at h = 1 / n.
-    fn meshes(c: f64, p: f64, n: &[f64]) -> (Vec<Step>, f64) {
+    fn meshes(c: f64, p: f64, n: &[f64]) -> (Vec<RefinementStep>, f64) {
         let f = |n: f64| 3.0 + c * n.powf(-p);
-        let step = |w: &[f64]| Step { distance: (f(w[1]) - f(w[0])).abs(), ratio: w[1] / w[0] };
+        let step = |w: &[f64]| RefinementStep { distance: (f(w[1]) - f(w[0])).abs(), ratio: w[1] / w[0] };
         (n.windows(2).map(step).collect(), (f(n[n.len() - 1]) - 3.0).abs())
     }
 
-    fn even(distances: &[f64]) -> Vec<Step> {
-        distances.iter().map(|&distance| Step { distance, ratio: 2.0 }).collect()
+    fn even(distances: &[f64]) -> Vec<RefinementStep> {
+        distances.iter().map(|&distance| RefinementStep { distance, ratio: 2.0 }).collect()
     }
 
     #[test]

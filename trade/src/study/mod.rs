@@ -20,11 +20,11 @@ pub(crate) use setting::measured;
 
 use crate::digest::digest;
 use crate::knobs::knob::KnobSpec;
-use crate::knobs::slot::{Board, Knob, ReferenceValue, setting_words};
+use crate::knobs::slot::{Knob, KnobBoard, ReferenceValue, setting_words};
 use crate::knobs::source::Source;
 use crate::measure::Bench;
-use crate::record::{Clock, KnobRecord, Machine, Outcome, Point, SCHEME, Trade, front_of, today};
-use crate::study::ladder::{Found, RATIO, Search};
+use crate::record::{Clock, KnobRecord, Machine, Point, SCHEME, SettingOutcome, Trade, front_of, today};
+use crate::study::ladder::{FoundReference, RATIO, ReferenceSearch};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -41,7 +41,7 @@ const LIMIT_SHARE: f64 = 0.1;
 
 /// What is asked.
 #[derive(Clone)]
-pub struct Options {
+pub struct StudyOptions {
     /// Folder for all results.
     pub out: PathBuf,
     /// Time for everything.
@@ -64,7 +64,7 @@ pub struct Options {
     pub bench: Bench,
 }
 
-impl Options {
+impl StudyOptions {
     /// Longest run of a setting.
     fn limit(&self) -> Duration {
         self.allowed().limit()
@@ -78,9 +78,9 @@ impl Options {
 /// A study that has its reference.
 struct Study<'a> {
     source: &'a Source<'a>,
-    options: &'a Options,
-    board: Board,
-    found: Found,
+    options: &'a StudyOptions,
+    board: KnobBoard,
+    found: FoundReference,
     store: Store,
     started: Instant,
 }
@@ -93,7 +93,7 @@ pub fn study(
     source: &Source<'_>,
     pipeline: &Pipeline,
     knobs: &[KnobSpec],
-    options: &Options,
+    options: &StudyOptions,
     tell: &mut dyn FnMut(String),
 ) -> Result<Trade, StageError> {
     let mut study = Study::begin(source, pipeline, knobs, options, tell)?;
@@ -108,11 +108,11 @@ impl<'a> Study<'a> {
         source: &'a Source<'a>,
         pipeline: &Pipeline,
         knobs: &[KnobSpec],
-        options: &'a Options,
+        options: &'a StudyOptions,
         tell: &mut dyn FnMut(String),
     ) -> Result<Study<'a>, StageError> {
         let started = Instant::now();
-        let board = Board::new(source, pipeline, knobs)?.with_reference(&options.reference)?;
+        let board = KnobBoard::new(source, pipeline, knobs)?.with_reference(&options.reference)?;
         if options.bench.apart.is_none() {
             let words =
                 "runs share this process: memory is the process's own, and a run that breaks off ends all";
@@ -133,7 +133,7 @@ impl<'a> Study<'a> {
         while self.store.lines.len() < most && !self.left().is_zero() {
             let Some(setting) = self.next() else { break };
             let Some(point) = self.measure(setting)? else { continue };
-            if self.store.lines.is_empty() && matches!(point.outcome, Outcome::OverLimit { .. }) {
+            if self.store.lines.is_empty() && matches!(point.outcome, SettingOutcome::OverLimit { .. }) {
                 break;
             }
             tell(self.words(&point));
@@ -172,9 +172,13 @@ impl<'a> Study<'a> {
 }
 
 /// How the reference of a board is looked for.
-fn search<'a>(source: &'a Source<'a>, board: &'a Board, options: &'a Options) -> Search<'a> {
+fn search<'a>(
+    source: &'a Source<'a>,
+    board: &'a KnobBoard,
+    options: &'a StudyOptions,
+) -> ReferenceSearch<'a> {
     let share = |s: f64| options.budget.mul_f64(s);
-    Search {
+    ReferenceSearch {
         source,
         board,
         bench: &options.bench,
@@ -190,11 +194,11 @@ fn search<'a>(source: &'a Source<'a>, board: &'a Board, options: &'a Options) ->
 /// The reference and the record: those of an earlier session where they are of this pipeline, else
 /// new ones.
 fn found(
-    search: &Search<'_>,
+    search: &ReferenceSearch<'_>,
     pipeline: &Pipeline,
-    options: &Options,
+    options: &StudyOptions,
     tell: &mut dyn FnMut(String),
-) -> Result<(Found, Store), StageError> {
+) -> Result<(FoundReference, Store), StageError> {
     let base = base(pipeline, search.board, options);
     if let Some(mut store) = Store::taken_up(&options.out, KIND, &base, tell) {
         store.lines.retain(|p| p.outcome.stands(options.limit()));
@@ -218,7 +222,7 @@ fn found(
 
 /// What must be the same for a later session: the pipeline, what is refined, the stage that ends
 /// runs, the number of threads. Knobs that are not refined may change.
-fn base(pipeline: &Pipeline, board: &Board, options: &Options) -> String {
+fn base(pipeline: &Pipeline, board: &KnobBoard, options: &StudyOptions) -> String {
     let own = board.own();
     let finer = board.refined(RATIO).into_iter().filter(|(key, value)| own.get(key) != Some(value)).collect();
     let threads = Machine::here().threads.to_string();

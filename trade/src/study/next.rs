@@ -3,7 +3,7 @@
 use super::Study;
 use crate::front::Cost;
 use crate::knobs::slot::{Knob, Setting};
-use crate::record::{Clock, Outcome, front_of};
+use crate::record::{Clock, SettingOutcome, front_of};
 use crate::reference::sample::{candidates, halton};
 use crate::study::ladder::FINER;
 
@@ -86,9 +86,9 @@ impl Study<'_> {
             let there = self.board.place(&p.setting);
             let far = (0..at.len()).map(|k| (at[k] - there[k]).abs() * if discrete[k] { 100.0 } else { 1.0 });
             let seconds = match &p.outcome {
-                Outcome::Measured(m) => m.time(Clock::Wall) * self.options.repeats as f64,
-                Outcome::OverLimit { seconds } => *seconds,
-                Outcome::Failed { .. } => return None,
+                SettingOutcome::Measured(m) => m.time(Clock::Wall) * self.options.repeats as f64,
+                SettingOutcome::OverLimit { seconds } => *seconds,
+                SettingOutcome::Failed { .. } => return None,
             };
             Some((far.sum::<f64>(), seconds))
         });

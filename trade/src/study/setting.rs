@@ -6,7 +6,7 @@ use crate::errors::{compare, ease};
 use crate::knobs::slot::{Setting, setting_words};
 use crate::measure::{Missed, Ran};
 use crate::page::pictures;
-use crate::record::{Measured, Outcome, Point};
+use crate::record::{Measured, Point, SettingOutcome};
 use toile_core::StageError;
 use toile_core::artifact::Digester;
 use toile_pipeline::{Pipeline, write_files};
@@ -20,7 +20,7 @@ impl Study<'_> {
             Err(faults) => {
                 let key = Digester::new().text(&setting_words(&setting)).finish().short();
                 let outcome =
-                    Outcome::Failed { code: "invalid_pipeline".into(), message: faults.to_string() };
+                    SettingOutcome::Failed { code: "invalid_pipeline".into(), message: faults.to_string() };
                 return Ok(Some(self.point(key, setting, outcome)));
             }
         };
@@ -34,23 +34,23 @@ impl Study<'_> {
         Ok(outcome.map(|outcome| self.point(key, setting, outcome)))
     }
 
-    fn point(&self, key: String, setting: Setting, outcome: Outcome) -> Point {
+    fn point(&self, key: String, setting: Setting, outcome: SettingOutcome) -> Point {
         let overrides = self.board.overrides(&setting).into_iter().map(|o| (o.path, o.value)).collect();
         Point { key, setting, overrides, outcome }
     }
 
     /// What comes of a setting, whose pictures are written; none where the budget ends, which says
     /// nothing of it.
-    fn outcome(&self, pipeline: &Pipeline, key: &str) -> Result<Option<Outcome>, StageError> {
+    fn outcome(&self, pipeline: &Pipeline, key: &str) -> Result<Option<SettingOutcome>, StageError> {
         Ok(Some(match self.runs(pipeline) {
             Ok((ran, measured)) => {
                 write_files(&self.options.out, &pictures(key, &ran))?;
-                Outcome::Measured(Box::new(measured))
+                SettingOutcome::Measured(Box::new(measured))
             }
             Err(Missed::Cancelled) => return Err(Missed::Cancelled.into()),
-            Err(Missed::Failed(e)) => Outcome::Failed { code: e.code.to_string(), message: e.message },
+            Err(Missed::Failed(e)) => SettingOutcome::Failed { code: e.code.to_string(), message: e.message },
             Err(Missed::OverLimit(_)) if self.left().is_zero() => return Ok(None),
-            Err(Missed::OverLimit(seconds)) => Outcome::OverLimit { seconds },
+            Err(Missed::OverLimit(seconds)) => SettingOutcome::OverLimit { seconds },
         }))
     }
 
@@ -76,15 +76,15 @@ impl Study<'_> {
         let what = if point.setting.is_empty() { "as it is".into() } else { setting_words(&point.setting) };
         let clock = self.options.clock;
         let came = match &point.outcome {
-            Outcome::Measured(m) => format!(
+            SettingOutcome::Measured(m) => format!(
                 "{:.2} s {}, 95 % within {:.2} mm{}",
                 m.time(clock),
                 clock.as_str(),
                 m.errors.distance_mm.p95,
                 if m.sound { "" } else { ", misses a quality limit" }
             ),
-            Outcome::Failed { message, .. } => format!("fails: {message}"),
-            Outcome::OverLimit { seconds } => format!("stopped after {seconds:.0} s"),
+            SettingOutcome::Failed { message, .. } => format!("fails: {message}"),
+            SettingOutcome::OverLimit { seconds } => format!("stopped after {seconds:.0} s"),
         };
         format!("setting {} ({what}): {came}", self.store.lines.len() + 1)
     }

@@ -1,11 +1,11 @@
 //! The record of a study, `trade.jsonl`: its reference in the first line, then a line a setting.
 
-use crate::journal::{Journal, Kind};
+use crate::journal::{Journal, JournalKind};
 use crate::record::{Point, Reference, SCHEME};
 use serde::{Deserialize, Serialize};
 
 /// The record's kind.
-pub(super) const KIND: Kind = Kind {
+pub(super) const KIND: JournalKind = JournalKind {
     name: "trade",
     scheme: SCHEME,
     changed: "the pipeline, what is refined or the number of threads has changed",
@@ -25,7 +25,7 @@ pub(super) type Store = Journal<Against, Point>;
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::record::Outcome;
+    use crate::record::SettingOutcome;
     use std::collections::BTreeMap;
 
     #[test]
@@ -41,7 +41,7 @@ mod tests {
         let found = Store::open(dir.path(), KIND, "base").unwrap().unwrap();
         let stopped = "it stopped moving".to_owned();
         assert_eq!(found.head.on.reference, Reference { ratio: 2.0, stopped, ..Reference::default() });
-        let outcome = Outcome::OverLimit { seconds: 3.0 };
+        let outcome = SettingOutcome::OverLimit { seconds: 3.0 };
         let point = Point { key: "one".into(), setting: BTreeMap::new(), overrides: Vec::new(), outcome };
         assert_eq!(found.lines, [point]);
         found.write().unwrap();

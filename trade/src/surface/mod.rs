@@ -52,7 +52,7 @@ impl Spread {
 
 /// A point of the cloth: its triangle and the weights of the triangle's corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spot {
+pub struct ClothPoint {
     /// Triangle.
     pub triangle: usize,
     /// Weights, sum 1.
@@ -60,25 +60,25 @@ pub struct Spot {
 }
 
 /// A drape prepared for questions.
-pub struct Surface<'a> {
+pub struct DrapedSurface<'a> {
     /// The garment.
     pub garment: &'a Garment,
     space: TriMesh,
     flat: Vec<TriMesh>,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> DrapedSurface<'a> {
     /// Prepares a garment.
     ///
     /// Errors: a garment or panel without triangles.
     pub fn new(garment: &'a Garment) -> Result<Self, StageError> {
         let space = mesh(garment.positions.iter().map(in_space).collect(), garment.triangles.clone())?;
         let flat = garment.panels.iter().map(|p| flat_mesh(garment, p)).collect::<Result<_, _>>()?;
-        Ok(Surface { garment, space, flat })
+        Ok(DrapedSurface { garment, space, flat })
     }
 
     /// Points spread evenly over the flat pattern.
-    pub fn spots(&self, count: usize) -> Vec<Spot> {
+    pub fn spots(&self, count: usize) -> Vec<ClothPoint> {
         let rest = |i: u32| self.garment.rest[i as usize];
         let area = |t: &[u32; 3]| {
             let [a, b, c] = t.map(rest);
@@ -96,20 +96,20 @@ impl<'a> Surface<'a> {
             .collect();
         let spot = |i: usize| {
             let at = (i as f64 + 0.5) / count as f64 * sum;
-            Spot { triangle: sums.partition_point(|s| *s < at).min(sums.len() - 1), weights: inside(i) }
+            ClothPoint { triangle: sums.partition_point(|s| *s < at).min(sums.len() - 1), weights: inside(i) }
         };
         (0..count).map(spot).collect()
     }
 
     /// Where a spot is in space.
-    pub fn place(&self, spot: &Spot) -> Point3 {
+    pub fn place(&self, spot: &ClothPoint) -> Point3 {
         let corners =
             self.garment.triangles[spot.triangle].map(|i| self.garment.positions[i as usize].coords);
         Point3::from((0..3).map(|k| corners[k] * spot.weights[k]).sum::<toile_core::artifact::Vector3>())
     }
 
     /// The panel of a spot, and where the spot is in it, flat.
-    pub fn flat_place(&self, spot: &Spot) -> Option<(usize, Point2)> {
+    pub fn flat_place(&self, spot: &ClothPoint) -> Option<(usize, Point2)> {
         let panel = self.garment.panels.iter().position(|p| p.triangles.contains(&spot.triangle))?;
         let corners = self.garment.triangles[spot.triangle].map(|i| self.garment.rest[i as usize].coords);
         let at = (0..3).map(|k| corners[k] * spot.weights[k]).sum::<toile_core::artifact::Vector2>();
@@ -123,17 +123,17 @@ impl<'a> Surface<'a> {
     }
 
     /// The spot of this cloth at a flat point of the panel with that name.
-    pub fn spot_at(&self, panel: &str, at: &Point2) -> Option<Spot> {
+    pub fn spot_at(&self, panel: &str, at: &Point2) -> Option<ClothPoint> {
         let k = self.garment.panels.iter().position(|p| p.name == panel)?;
         let (_, (triangle, location)) = self.flat[k].project_local_point_and_get_location(flat(at), true);
         let first = self.garment.panels[k].triangles.start;
-        Some(Spot { triangle: first + triangle as usize, weights: location.barycentric_coordinates()? })
+        Some(ClothPoint { triangle: first + triangle as usize, weights: location.barycentric_coordinates()? })
     }
 }
 
 /// Distances between two drapes, both ways.
-pub fn distance(a: &Surface<'_>, b: &Surface<'_>) -> Spread {
-    let one_way = |from: &Surface<'_>, to: &Surface<'_>| -> Vec<f64> {
+pub fn distance(a: &DrapedSurface<'_>, b: &DrapedSurface<'_>) -> Spread {
+    let one_way = |from: &DrapedSurface<'_>, to: &DrapedSurface<'_>| -> Vec<f64> {
         from.spots(POINTS).par_iter().map(|s| to.distance(&from.place(s))).collect()
     };
     let mut distances = one_way(a, b);
@@ -142,8 +142,8 @@ pub fn distance(a: &Surface<'_>, b: &Surface<'_>) -> Spread {
 }
 
 /// Spots of `b` with the spots of `a` that are the same points of the pattern.
-pub fn pairs(a: &Surface<'_>, b: &Surface<'_>) -> Vec<(Spot, Spot)> {
-    let pair = |of_b: &Spot| {
+pub fn pairs(a: &DrapedSurface<'_>, b: &DrapedSurface<'_>) -> Vec<(ClothPoint, ClothPoint)> {
+    let pair = |of_b: &ClothPoint| {
         let (panel, at) = b.flat_place(of_b)?;
         Some((a.spot_at(&b.garment.panels[panel].name, &at)?, *of_b))
     };
@@ -151,7 +151,7 @@ pub fn pairs(a: &Surface<'_>, b: &Surface<'_>) -> Vec<(Spot, Spot)> {
 }
 
 /// Displacement between the places of the same points of the pattern.
-pub fn displacement(a: &Surface<'_>, b: &Surface<'_>) -> Spread {
+pub fn displacement(a: &DrapedSurface<'_>, b: &DrapedSurface<'_>) -> Spread {
     Spread::of(pairs(a, b).iter().map(|(of_a, of_b)| (a.place(of_a) - b.place(of_b)).norm()).collect())
 }
 

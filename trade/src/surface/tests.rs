@@ -5,7 +5,7 @@ use super::testing::{ball, sheet, shifted};
 use super::*;
 
 fn between(a: &Garment, b: &Garment) -> (Spread, Spread) {
-    let (a, b) = (Surface::new(a).unwrap(), Surface::new(b).unwrap());
+    let (a, b) = (DrapedSurface::new(a).unwrap(), DrapedSurface::new(b).unwrap());
     (distance(&a, &b), displacement(&a, &b))
 }
 
@@ -48,7 +48,7 @@ fn another_mesh_of_the_same_flat_cloth_is_no_difference() {
 #[test]
 fn spots_cover_every_part_by_its_area() {
     let a = sheet(3, 1.0);
-    let surface = Surface::new(&a).unwrap();
+    let surface = DrapedSurface::new(&a).unwrap();
     let left = surface.spots(POINTS).iter().filter(|s| surface.place(s).x < 0.25).count();
     near(left as f64 / POINTS as f64, 0.25, 0.01);
 }
@@ -58,6 +58,6 @@ fn a_garment_without_triangles_is_refused() {
     let mut a = sheet(1, 1.0);
     a.triangles.clear();
     a.panels[0].triangles = 0..0;
-    let e = Surface::new(&a).err().unwrap();
+    let e = DrapedSurface::new(&a).err().unwrap();
     assert_eq!(e.message, "there is a garment or panel without triangles");
 }

@@ -19,7 +19,7 @@ mod wish;
 mod written;
 
 pub use pick::{picks, refusal};
-pub use proof::Proof;
+pub use proof::SettingProof;
 pub use prover::Prover;
 pub use wish::Wish;
 pub use written::MARK;

@@ -6,7 +6,7 @@ use crate::record::{Clock, Measured};
 
 /// A setting that was proved.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Proof {
+pub struct SettingProof {
     /// The index of its point.
     pub point: usize,
     /// The fresh run.
@@ -17,7 +17,7 @@ pub struct Proof {
     pub failed: Vec<String>,
 }
 
-impl Proof {
+impl SettingProof {
     /// Moved starts that keep an error.
     pub fn kept(&self, max_error_mm: f64) -> usize {
         self.starts.iter().filter(|m| m.p95 <= max_error_mm).count()

@@ -1,6 +1,6 @@
 //! Runs the picks of a wish afresh, the best first, until one keeps it.
 
-use super::{Proof, Wish, overrides, picks, refusal};
+use super::{SettingProof, Wish, overrides, picks, refusal};
 use crate::errors::compare;
 use crate::knobs::slot::setting_words;
 use crate::knobs::source::Source;
@@ -34,7 +34,7 @@ impl Prover<'_> {
     /// Tries the picks of a wish, the best first, until one is proved.
     ///
     /// Errors: none is, or the reference does not run.
-    pub fn prove(&self, wish: &Wish, tell: &mut dyn FnMut(String)) -> Result<Proof, StageError> {
+    pub fn prove(&self, wish: &Wish, tell: &mut dyn FnMut(String)) -> Result<SettingProof, StageError> {
         match refusal(self.trade, wish) {
             Some(refused) => Err(refused),
             None => self.prove_against(wish, &self.reference()?, &mut Vec::new(), tell),
@@ -49,9 +49,9 @@ impl Prover<'_> {
         &self,
         wish: &Wish,
         reference: &Ran,
-        known: &mut Vec<Proof>,
+        known: &mut Vec<SettingProof>,
         tell: &mut dyn FnMut(String),
-    ) -> Result<Proof, StageError> {
+    ) -> Result<SettingProof, StageError> {
         for point in picks(self.trade, wish) {
             let setting = setting_words(&self.trade.points[point].setting);
             let before = known.iter().find(|p| p.point == point).cloned();
@@ -101,12 +101,12 @@ impl Prover<'_> {
         self.source.load(overrides).map_err(|f| StageError::invalid(f.to_string()))
     }
 
-    fn one(&self, point: usize, wish: &Wish, reference: &Ran) -> Result<Proof, Missed> {
+    fn one(&self, point: usize, wish: &Wish, reference: &Ran) -> Result<SettingProof, Missed> {
         let set = overrides(&self.trade.points[point].overrides);
         let pipeline = self.load(&set).map_err(Missed::Failed)?;
         let fresh = self.bench.run(&pipeline, None, None)?;
         let fresh = measured(&fresh, reference).map_err(Missed::Failed)?;
-        let mut proof = Proof { point, fresh, starts: Vec::new(), failed: Vec::new() };
+        let mut proof = SettingProof { point, fresh, starts: Vec::new(), failed: Vec::new() };
         let is_worth = proof.is_good(wish, self.trade.clock) && wish.max_error_mm.is_some();
         for seed in 1..=if is_worth { self.starts as u64 } else { 0 } {
             match moved_start(self.source, &set, self.bench, (self.jitter, seed), None, None) {

@@ -22,7 +22,12 @@ fn point(name: &str, seconds: f64, p95: f64, sound: bool) -> Point {
         repeatable: true,
     };
     let setting = BTreeMap::from([("mesher.edge".to_owned(), format!("\"{name}\""))]);
-    Point { key: name.into(), setting, overrides: Vec::new(), outcome: Outcome::Measured(Box::new(measured)) }
+    Point {
+        key: name.into(),
+        setting,
+        overrides: Vec::new(),
+        outcome: SettingOutcome::Measured(Box::new(measured)),
+    }
 }
 
 fn trade(floor: Option<f64>) -> Trade {
@@ -140,14 +145,18 @@ fn a_proof_needs_every_start() {
     let near = Millimetres { mean: 0.3, p95: 1.0, max: 3.0 };
     let far = Millimetres { p95: 2.5, ..near };
     let fresh = trade(None).points[0].measured().unwrap().clone();
-    let proof =
-        |starts: Vec<Millimetres>| Proof { point: 0, fresh: fresh.clone(), starts, failed: Vec::new() };
+    let proof = |starts: Vec<Millimetres>| SettingProof {
+        point: 0,
+        fresh: fresh.clone(),
+        starts,
+        failed: Vec::new(),
+    };
     let two = wish(Some(2.0), None);
     assert!(proof(vec![near; 10]).is_good(&two, Clock::Wall));
     assert!(!proof(vec![near, far]).is_good(&two, Clock::Wall));
     assert!(!proof(Vec::new()).is_good(&wish(Some(2.0), Some(3.0)), Clock::Wall));
     assert!(proof(Vec::new()).is_good(&wish(None, Some(8.0)), Clock::Cpu));
-    let failed = Proof { failed: vec!["it fell".into()], ..proof(vec![near]) };
+    let failed = SettingProof { failed: vec!["it fell".into()], ..proof(vec![near]) };
     assert!(!failed.is_good(&two, Clock::Wall));
 }
 

@@ -1,7 +1,7 @@
 //! The tuned pipeline file: the proved setting in its place, and what was measured in lines of
 //! comment on top.
 
-use super::{Proof, Prover, Wish, overrides};
+use super::{Prover, SettingProof, Wish, overrides};
 use crate::knobs::slot::setting_words;
 use crate::record::{Clock, Machine, Point};
 use toile_core::StageError;
@@ -15,14 +15,14 @@ impl Prover<'_> {
     /// figures on top. Its named qualities are left out: they were measured on the file as it was.
     ///
     /// Errors: the setting does not fit the file any more.
-    pub fn tuned(&self, wish: &Wish, proof: &Proof, date: &str) -> Result<String, StageError> {
+    pub fn tuned(&self, wish: &Wish, proof: &SettingProof, date: &str) -> Result<String, StageError> {
         let point = &self.trade.points[proof.point];
         let pipeline = self.load(&overrides(&point.overrides))?;
         let text = without_qualities(&pipeline.text).map_err(|f| StageError::invalid(f.message))?;
         Ok(commented(&text, &self.comments(wish, proof, point, date)))
     }
 
-    fn comments(&self, wish: &Wish, proof: &Proof, point: &Point, date: &str) -> Vec<String> {
+    fn comments(&self, wish: &Wish, proof: &SettingProof, point: &Point, date: &str) -> Vec<String> {
         let (m, d, machine) = (&proof.fresh, &proof.fresh.errors.distance_mm, Machine::here());
         let mut lines = vec![
             format!(

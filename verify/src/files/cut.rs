@@ -1,7 +1,7 @@
 //! A garment from the mesh of a file that is told nothing else: its panels, and its texture as
 //! their flat shape.
 
-use crate::subject::{Cut, garment_of};
+use crate::subject::{PanelTriangles, garment_of};
 use std::collections::{BTreeMap, HashMap};
 use toile_core::artifact::{Garment, Pattern, Point2, Point3, polygon_area};
 use toile_geometry::components::groups;
@@ -19,8 +19,10 @@ pub(super) fn garment(meshes: &FileMeshes, pattern: Option<&Pattern>) -> (Garmen
     let (of, count) = panels(meshes);
     let names = names(meshes, &of, count);
     let scale = scale(meshes, pattern, count);
-    let mut cuts: Vec<Cut> =
-        names.into_iter().map(|name| Cut { name, triangles: Vec::new(), flat: Vec::new() }).collect();
+    let mut cuts: Vec<PanelTriangles> = names
+        .into_iter()
+        .map(|name| PanelTriangles { name, triangles: Vec::new(), flat: Vec::new() })
+        .collect();
     for (k, panel) in of.iter().enumerate() {
         let cut = &mut cuts[*panel as usize];
         cut.triangles.push(meshes.triangles[k]);

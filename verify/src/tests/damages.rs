@@ -83,12 +83,12 @@ fn a_thousand_damages_beyond_the_limits_are_never_certified() {
     let sound = Skirt::new(12, 8);
     let pattern = pattern(12);
     let body = post();
-    assert!(judge(&sound.subject(Some(&pattern), Ok(body.clone())), &Limits::default()).holds());
+    assert!(judge(&sound.subject(Some(&pattern), Ok(body.clone())), &CheckLimits::default()).holds());
     let mut numbers = Numbers(1994);
     for case in 0..1000 {
         let mut skirt = sound.clone();
         let what = damage(&mut skirt, &mut numbers);
-        let found = judge(&skirt.subject(Some(&pattern), Ok(body.clone())), &Limits::default());
+        let found = judge(&skirt.subject(Some(&pattern), Ok(body.clone())), &CheckLimits::default());
         assert!(!found.holds(), "case {case}: {what}: {:?}", found.checks);
     }
 }

@@ -7,8 +7,8 @@ mod same;
 mod truths;
 
 use crate::files::{subject, wearer};
-use crate::subject::{Subject, Wearer};
-use crate::{Check, Judgement, Limits, Verdict, judge};
+use crate::subject::{Subject, WearerBody};
+use crate::{CheckLimits, FigureCheck, Judgement, Verdict, judge};
 use std::f64::consts::PI;
 use toile_core::artifact::{
     EdgeCurve, EdgeRef, EdgeUse, Pattern, PatternLoop, PatternSeam, Piece, PieceEdge, Point2, Point3,
@@ -71,13 +71,13 @@ impl Skirt {
         panel * (self.columns + 1) * (self.rows + 1) + row * (self.columns + 1) + column
     }
 
-    fn subject(&self, pattern: Option<&Pattern>, body: Result<Wearer, String>) -> Subject {
+    fn subject(&self, pattern: Option<&Pattern>, body: Result<WearerBody, String>) -> Subject {
         subject(&self.meshes, None, pattern, body)
     }
 
     fn judged(&self) -> Judgement {
         let pattern = pattern(self.columns);
-        judge(&self.subject(Some(&pattern), Ok(post())), &Limits::default())
+        judge(&self.subject(Some(&pattern), Ok(post())), &CheckLimits::default())
     }
 }
 
@@ -111,7 +111,7 @@ fn pattern(columns: usize) -> Pattern {
 }
 
 /// A closed post of sixteen sides that stands in the skirt.
-fn post() -> Wearer {
+fn post() -> WearerBody {
     let sides = 16_u32;
     let mut places = Vec::new();
     for y in [0.0, 1.7] {
@@ -130,7 +130,7 @@ fn post() -> Wearer {
     wearer(&places, &triangles)
 }
 
-fn check<'j>(found: &'j Judgement, name: &str) -> &'j Check {
+fn check<'j>(found: &'j Judgement, name: &str) -> &'j FigureCheck {
     found.check(name).unwrap()
 }
 

@@ -1,7 +1,7 @@
 //! Files: what cannot be read is refused by name and remedy.
 
 use super::*;
-use crate::files::{Asked, certify};
+use crate::files::{AskedFiles, certify};
 use std::path::Path;
 use toile_core::artifact::Digest;
 
@@ -25,8 +25,8 @@ fn obj(skirt: &Skirt, unit: f64) -> String {
     text
 }
 
-fn asked(garment: &Path) -> Asked {
-    Asked { garment: garment.to_owned(), ..Asked::default() }
+fn asked(garment: &Path) -> AskedFiles {
+    AskedFiles { garment: garment.to_owned(), ..AskedFiles::default() }
 }
 
 fn refused(garment: &Path) -> (String, String) {
@@ -83,7 +83,7 @@ fn what_cannot_be_read_is_refused_by_name_and_remedy() {
     assert_eq!(hint, "garments are 5 cm to 6 m from corner to corner; state the unit with `--unit`");
     std::fs::write(at("skirt.obj"), obj(&Skirt::new(12, 8), 1.0)).unwrap();
     std::fs::write(at("pattern.txt"), "none").unwrap();
-    let asked = Asked { pattern: Some(at("pattern.txt")), ..asked(&at("skirt.obj")) };
+    let asked = AskedFiles { pattern: Some(at("pattern.txt")), ..asked(&at("skirt.obj")) };
     let e = certify(&asked).unwrap_err();
     assert_eq!(e.message, format!("\"{}\" is no pattern by its name", shown("pattern.txt")));
     assert_eq!(e.hint.as_deref(), Some("name a pattern of GarmentCode (.json), a .dxf, .svg, .sm2d or .val file"));

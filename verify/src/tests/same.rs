@@ -1,7 +1,7 @@
 //! What must not change a figure: a rigid motion, the number of threads.
 
 use super::*;
-use crate::{Certificate, Input};
+use crate::{Certificate, InputFile};
 use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
 
@@ -22,7 +22,7 @@ fn figures(skirt: &Skirt, to: &Isometry3<f64>) -> Vec<(&'static str, Option<f64>
     let places: Vec<Point3> = body.positions.iter().map(|p| to * p).collect();
     let body = wearer(&places, &body.triangles);
     let pattern = pattern(24);
-    let found = judge(&moved.subject(Some(&pattern), Ok(body)), &Limits::default());
+    let found = judge(&moved.subject(Some(&pattern), Ok(body)), &CheckLimits::default());
     found.checks.iter().map(|c| (c.name, c.value)).collect()
 }
 
@@ -49,7 +49,7 @@ fn the_certificate_does_not_depend_on_the_number_of_threads() {
     let text = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let certificate = || {
-            let inputs = vec![Input::of("garment", "skirt.glb", b"skirt")];
+            let inputs = vec![InputFile::of("garment", "skirt.glb", b"skirt")];
             Certificate::new(inputs, skirt.judged(), None, Vec::new())
         };
         pool.install(|| serde_json::to_string(&certificate()).unwrap())

@@ -1,7 +1,7 @@
 //! One damage each, found and counted.
 
 use super::*;
-use crate::compare::{By, compare};
+use crate::compare::{ComparedBy, compare};
 
 #[test]
 fn a_sound_skirt_holds_and_everything_is_judged() {
@@ -29,7 +29,7 @@ fn one_crossing_pair_among_forty_thousand_triangles_is_counted_as_one() {
     skirt.meshes.groups.push(2);
     skirt.meshes.materials.push(0);
     skirt.meshes.names.push("label".into());
-    let found = judge(&skirt.subject(None, Ok(post())), &Limits::default());
+    let found = judge(&skirt.subject(None, Ok(post())), &CheckLimits::default());
     let crossings = check(&found, "self_crossings");
     assert_eq!((crossings.value, crossings.verdict), (Some(1.0), Verdict::Fails));
     assert!(crossings.words.starts_with("the first at panel \"front\" at ("), "{}", crossings.words);
@@ -60,7 +60,7 @@ fn a_stretched_panel_is_named() {
             p.y *= 0.9;
         }
     }
-    let found = judge(&skirt.subject(None, Ok(post())), &Limits::default());
+    let found = judge(&skirt.subject(None, Ok(post())), &CheckLimits::default());
     assert_eq!(failing(&found), ["area_error", "outline_error", "strain_p99"]);
     let area = check(&found, "area_error");
     assert_eq!(area.words, "panel \"back\"");
@@ -120,7 +120,7 @@ fn what_cannot_be_judged_says_why() {
     let mut skirt = Skirt::new(24, 12);
     skirt.meshes.texture.iter_mut().for_each(|t| *t = None);
     let none = Err("no body is known: name one with `--body`".to_owned());
-    let found = judge(&skirt.subject(None, none), &Limits::default());
+    let found = judge(&skirt.subject(None, none), &CheckLimits::default());
     assert!(found.holds());
     let words = |name: &str| check(&found, name).words.clone();
     assert_eq!(words("seam_gap"), "no pattern was given: name one with `--pattern`");
@@ -151,7 +151,7 @@ fn a_pattern_of_another_garment_is_refused() {
     for piece in &mut other.pieces {
         piece.outer.corners[2] = Point2::new(0.3, 0.3);
     }
-    let found = judge(&skirt.subject(Some(&other), Ok(post())), &Limits::default());
+    let found = judge(&skirt.subject(Some(&other), Ok(post())), &CheckLimits::default());
     assert_eq!(failing(&found), ["panels_off_pattern"]);
     assert_eq!(
         check(&found, "panels_off_pattern").words,
@@ -182,7 +182,7 @@ fn a_moved_vertex_is_found_beside_a_second_garment() {
     let [a, b] = [&sound, &moved].map(|s| s.subject(None, none()).garment);
     let difference = compare(&a, &b);
     let (name, worst) = difference.worst().unwrap();
-    assert_eq!((name, worst.by), ("back", By::Vertices));
+    assert_eq!((name, worst.by), ("back", ComparedBy::Vertices));
     assert!((worst.max_m - 3e-4).abs() < 1e-12 && worst.p99_m < 1e-12, "{worst:?}");
     assert_eq!(Point3::from(worst.at), sound.meshes.positions[v]);
     assert_eq!(difference.panels["front"].max_m, 0.0);
@@ -190,5 +190,5 @@ fn a_moved_vertex_is_found_beside_a_second_garment() {
     let finer = Skirt::new(48, 24).subject(None, none()).garment;
     let between = compare(&a, &finer);
     let worst = between.worst().unwrap().1;
-    assert!(worst.by == By::Surfaces && worst.max_m < 1e-3 && worst.max_m > 1e-5, "{worst:?}");
+    assert!(worst.by == ComparedBy::Surfaces && worst.max_m < 1e-3 && worst.max_m > 1e-5, "{worst:?}");
 }

@@ -5,7 +5,7 @@
 //! are for people alone: no result depends on them.
 
 use super::manifest::{sealed, unsealed};
-use super::{Cache, Fed, Ingredients, Kept, Manifest};
+use super::{Cache, Fed, Ingredients, KeptValue, Manifest};
 use crate::load::{Pipeline, fields_of};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,7 +14,7 @@ use toile_core::artifact::Digest;
 
 /// What a stage was last made from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Last {
+pub(crate) struct LastMade {
     ingredients: Ingredients,
     reads: Vec<(String, Option<Digest>)>,
     /// Names of the set on each output port; none for a single artifact.
@@ -111,12 +111,12 @@ impl Cache {
             return;
         }
         let path = self.last_path(pipeline, id, &ingredients.entry);
-        let names = |kept: &Kept| match kept {
-            Kept::One(_) => None,
-            Kept::Set(set) => Some(set.keys().cloned().collect()),
+        let names = |kept: &KeptValue| match kept {
+            KeptValue::One(_) => None,
+            KeptValue::Set(set) => Some(set.keys().cloned().collect()),
         };
         let sets = manifest.outputs.iter().map(names).collect();
-        let last = Last { ingredients: ingredients.clone(), reads: manifest.reads.clone(), sets };
+        let last = LastMade { ingredients: ingredients.clone(), reads: manifest.reads.clone(), sets };
         let bytes = sealed(&last);
         match self.store.read(&path).ok().flatten().as_ref() == Some(&bytes) {
             true => self.store.touch(&path),
@@ -125,7 +125,7 @@ impl Cache {
     }
 
     /// What a stage of a pipeline was last made from.
-    pub(crate) fn last(&self, pipeline: &Pipeline, id: &str, entry: &str) -> Option<Last> {
+    pub(crate) fn last(&self, pipeline: &Pipeline, id: &str, entry: &str) -> Option<LastMade> {
         let bytes = self.store.read(&self.last_path(pipeline, id, entry)).ok()??;
         unsealed(&bytes).ok()
     }
@@ -141,7 +141,7 @@ impl Cache {
     }
 }
 
-impl Last {
+impl LastMade {
     /// The differences to what the stage would be made from now; `base` is the folder that files
     /// are relative to. Inputs that are as before stand last.
     pub(crate) fn compare(&self, now: &Ingredients, base: &Path) -> Vec<Cause> {
@@ -167,7 +167,7 @@ impl Last {
         causes
     }
 
-    fn input(&self, now: &super::key::Used) -> Option<Cause> {
+    fn input(&self, now: &super::key::FedPort) -> Option<Cause> {
         let was = self.ingredients.inputs.iter().find(|u| u.port == now.port).map(|u| &u.value);
         if now.value == Fed::Nothing && was.is_none_or(|w| *w == Fed::Nothing) {
             return None;

@@ -27,12 +27,12 @@ pub(crate) struct Ingredients {
     /// Parameters as RON.
     pub(super) params: String,
     pub(super) entry: String,
-    pub(super) inputs: Vec<Used>,
+    pub(super) inputs: Vec<FedPort>,
 }
 
 /// The value on an input port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Used {
+pub(crate) struct FedPort {
     /// The port's name.
     pub(super) port: String,
     /// The id of the stage that made it, for people; no part of the key.
@@ -66,7 +66,7 @@ impl Ingredients {
             params: node.stage.params(),
             entry: entry.to_owned(),
             inputs: ports
-                .map(|(port, (from, value))| Used { port: port.name.to_owned(), from, value })
+                .map(|(port, (from, value))| FedPort { port: port.name.to_owned(), from, value })
                 .collect(),
         }
     }

@@ -16,9 +16,9 @@ pub(crate) struct Manifest {
     /// Files that it read, with the digest of their content; `None` for one that was not there.
     pub(crate) reads: Vec<(String, Option<Digest>)>,
     /// What it made, in the order of its ports.
-    pub(crate) outputs: Vec<Kept>,
+    pub(crate) outputs: Vec<KeptValue>,
     /// Figures that it gave.
-    figures: Vec<Figure>,
+    figures: Vec<StoredFigure>,
     /// What it told.
     #[serde(flatten)]
     pub(crate) remarks: Remarks,
@@ -26,7 +26,7 @@ pub(crate) struct Manifest {
 
 /// The value of an output port.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Kept {
+pub(crate) enum KeptValue {
     /// A single artifact.
     One(Blob),
     /// A named set.
@@ -42,36 +42,37 @@ pub(crate) struct Blob {
     pub(crate) stored: bool,
 }
 
-impl Kept {
+impl KeptValue {
     /// Its artifacts.
     pub(crate) fn blobs(&self) -> Vec<Blob> {
         match self {
-            Kept::One(blob) => vec![*blob],
-            Kept::Set(set) => set.values().copied().collect(),
+            KeptValue::One(blob) => vec![*blob],
+            KeptValue::Set(set) => set.values().copied().collect(),
         }
     }
 }
 
 /// A figure; its numbers as bits, so that they come back as they were.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Figure(String, u64, String, u64);
+struct StoredFigure(String, u64, String, u64);
 
 impl Manifest {
     pub(crate) fn new(
         reads: Vec<(String, Option<Digest>)>,
-        outputs: Vec<Kept>,
+        outputs: Vec<KeptValue>,
         figures: &[Measure],
         remarks: &Remarks,
     ) -> Self {
-        let figure =
-            |m: &Measure| Figure(m.name.clone(), m.value.to_bits(), m.unit.into(), m.tolerance.to_bits());
+        let figure = |m: &Measure| {
+            StoredFigure(m.name.clone(), m.value.to_bits(), m.unit.into(), m.tolerance.to_bits())
+        };
         let figures = figures.iter().map(figure).collect();
         Manifest { reads, outputs, figures, remarks: remarks.clone() }
     }
 
     /// The figures that the stage gave.
     pub(crate) fn figures(&self) -> Vec<Measure> {
-        let measure = |f: &Figure| Measure {
+        let measure = |f: &StoredFigure| Measure {
             name: f.0.clone(),
             value: f64::from_bits(f.1),
             unit: intern(&f.2),
@@ -137,7 +138,7 @@ mod tests {
             Measure { name: "threshold".into(), value: 0.1 + 0.2, unit: "grey levels", tolerance: 0.0 };
         Manifest::new(
             vec![("a.jpg".into(), Some(Digest::of(b"a"))), ("gone.mtl".into(), None)],
-            vec![Kept::One(blob), Kept::Set(set)],
+            vec![KeptValue::One(blob), KeptValue::Set(set)],
             &[figure, Measure { name: "none".into(), value: f64::NAN, unit: "", tolerance: 0.0 }],
             &Remarks { notes: vec!["a vest".into()], warnings: vec!["dark".into()] },
         )

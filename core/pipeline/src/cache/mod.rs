@@ -24,18 +24,18 @@ mod store;
 mod tests;
 
 pub use causes::Cause;
-pub(crate) use causes::{Last, RUN_SO_FAR};
+pub(crate) use causes::{LastMade, RUN_SO_FAR};
 pub(crate) use key::{Fed, Ingredients};
-pub(crate) use manifest::{Blob, Kept, Manifest};
+pub(crate) use manifest::{Blob, KeptValue, Manifest};
 pub use size::Bytes;
 pub use space::Usage;
 
 use crate::file_hash::file_hash;
-use crate::made::Made;
+use crate::made::EntryResult;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use store::{Shelf, Store};
+use store::{FolderStore, Shelf};
 use toile_core::artifact::{Artifact, Digest, Digester, Kind, stored};
 use toile_core::{Card, MakePart, Memo, PortValue, StageError};
 
@@ -46,7 +46,7 @@ pub const DEFAULT_LIMIT: u64 = 2_000_000_000;
 /// A folder of results. Several runs, and several programs, may use it at once.
 #[derive(Debug)]
 pub struct Cache {
-    store: Store,
+    store: FolderStore,
     limit: u64,
     warnings: Mutex<Vec<String>>,
     /// False of a cache that only takes digests.
@@ -58,7 +58,7 @@ pub struct Cache {
 
 /// What became of a search.
 #[derive(Debug)]
-pub(crate) enum Found {
+pub(crate) enum CacheAnswer {
     /// It is there, whole as far as can be seen without reading it.
     Hit(Manifest),
     /// It is not, or no more.
@@ -92,7 +92,7 @@ impl Cache {
     pub fn new(folder: &Path) -> Self {
         let root = folder.join(format!("v{}", key::SCHEME));
         Cache {
-            store: Store { root },
+            store: FolderStore { root },
             limit: DEFAULT_LIMIT,
             keeps: true,
             warnings: Mutex::default(),
@@ -122,14 +122,14 @@ impl Cache {
     }
 
     /// Looks for a run; `base` is the folder that files are relative to.
-    pub(crate) fn find(&self, key: &Digest, base: &Path) -> Found {
+    pub(crate) fn find(&self, key: &Digest, base: &Path) -> CacheAnswer {
         if !self.keeps {
-            return Found::Miss(Miss::Unknown);
+            return CacheAnswer::Miss(Miss::Unknown);
         }
         let first = match self.manifest(key) {
             Ok(Some(manifest)) => manifest,
-            Ok(None) => return Found::Miss(Miss::Unknown),
-            Err(damage) => return Found::Miss(Miss::Damaged(damage)),
+            Ok(None) => return CacheAnswer::Miss(Miss::Unknown),
+            Err(damage) => return CacheAnswer::Miss(Miss::Damaged(damage)),
         };
         let now: Vec<(String, Option<Digest>)> =
             first.reads.iter().map(|(path, _)| (path.clone(), file_hash(&base.join(path)))).collect();
@@ -140,15 +140,15 @@ impl Cache {
             Ok(Some(manifest)) => self.whole(manifest),
             Ok(None) => {
                 let changed = now.into_iter().zip(first.reads).filter(|(a, b)| a != b);
-                Found::Miss(Miss::Files(changed.map(|((path, _), _)| path).collect()))
+                CacheAnswer::Miss(Miss::Files(changed.map(|((path, _), _)| path).collect()))
             }
-            Err(damage) => Found::Miss(Miss::Damaged(damage)),
+            Err(damage) => CacheAnswer::Miss(Miss::Damaged(damage)),
         }
     }
 
     /// Notes that a run's files were used.
     pub(crate) fn touch(&self, key: &Digest, manifest: &Manifest) {
-        let blobs = manifest.outputs.iter().flat_map(Kept::blobs).filter(|b| b.stored);
+        let blobs = manifest.outputs.iter().flat_map(KeptValue::blobs).filter(|b| b.stored);
         blobs.for_each(|b| self.store.touch(&self.store.path(Shelf::Blobs, &b.digest)));
         self.names(key, manifest).iter().for_each(|name| {
             self.store.touch(&self.store.path(Shelf::Runs, name));
@@ -156,16 +156,16 @@ impl Cache {
     }
 
     /// Keeps a run: what the stage made, what it said and which files it read.
-    pub(crate) fn keep(&self, key: &Digest, made: &Made) -> Manifest {
+    pub(crate) fn keep(&self, key: &Digest, made: &EntryResult) -> Manifest {
         let mut reads = made.reads.clone();
         reads.sort();
         reads.dedup();
         let full = key::with_reads(key, &reads);
         let kept = made.outputs.iter().enumerate().map(|(port, value)| match value {
-            PortValue::One(artifact) => Kept::One(self.keep_artifact(&full, port, "", artifact)),
+            PortValue::One(artifact) => KeptValue::One(self.keep_artifact(&full, port, "", artifact)),
             PortValue::Set(_, set) => {
                 let blob = |(n, a): (&String, _)| (n.clone(), self.keep_artifact(&full, port, n, a));
-                Kept::Set(set.iter().map(blob).collect())
+                KeptValue::Set(set.iter().map(blob).collect())
             }
         });
         let manifest = Manifest::new(reads, kept.collect(), &made.figures, &made.remarks);
@@ -243,12 +243,12 @@ impl Cache {
     }
 
     /// A manifest counts only while all that it names is still there.
-    fn whole(&self, manifest: Manifest) -> Found {
-        let blobs = manifest.outputs.iter().flat_map(Kept::blobs);
+    fn whole(&self, manifest: Manifest) -> CacheAnswer {
+        let blobs = manifest.outputs.iter().flat_map(KeptValue::blobs);
         let there = |b: Blob| !b.stored || self.store.path(Shelf::Blobs, &b.digest).is_file();
         match blobs.into_iter().all(there) {
-            true => Found::Hit(manifest),
-            false => Found::Miss(Miss::Pruned),
+            true => CacheAnswer::Hit(manifest),
+            false => CacheAnswer::Miss(Miss::Pruned),
         }
     }
 

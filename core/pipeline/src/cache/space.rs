@@ -22,7 +22,7 @@ pub struct Usage {
     pub bytes: u64,
 }
 
-struct Entry {
+struct CacheFile {
     path: PathBuf,
     bytes: u64,
     used: SystemTime,
@@ -40,7 +40,7 @@ impl Cache {
     /// that were killed have left; returns the bytes freed.
     pub fn prune(&self, limit: u64) -> io::Result<u64> {
         let mut entries = files(self.folder())?;
-        let left = |e: &&Entry| e.path.file_name().and_then(|n| n.to_str()).is_some_and(is_left);
+        let left = |e: &&CacheFile| e.path.file_name().and_then(|n| n.to_str()).is_some_and(is_left);
         entries.iter().filter(left).for_each(|e| beside::remove_if_left(&e.path));
         entries.sort_by(|a, b| (a.used, &a.path).cmp(&(b.used, &b.path)));
         let total: u64 = entries.iter().map(|e| e.bytes).sum();
@@ -85,7 +85,7 @@ fn is_left(name: &str) -> bool {
 }
 
 /// All files below a folder; none where it does not exist.
-fn files(folder: &Path) -> io::Result<Vec<Entry>> {
+fn files(folder: &Path) -> io::Result<Vec<CacheFile>> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -100,7 +100,7 @@ fn files(folder: &Path) -> io::Result<Vec<Entry>> {
             let Ok(meta) = item.metadata() else { continue };
             match meta.is_dir() {
                 true => folders.push(item.path()),
-                false => found.push(Entry {
+                false => found.push(CacheFile {
                     path: item.path(),
                     bytes: meta.len(),
                     used: meta.modified().unwrap_or(SystemTime::UNIX_EPOCH),

@@ -38,11 +38,11 @@ impl Shelf {
 
 /// A folder of files.
 #[derive(Debug, Clone)]
-pub(super) struct Store {
+pub(super) struct FolderStore {
     pub(super) root: PathBuf,
 }
 
-impl Store {
+impl FolderStore {
     pub(super) fn path(&self, shelf: Shelf, name: &Digest) -> PathBuf {
         let hex = name.hex();
         self.root.join(shelf.folder()).join(&hex[..2]).join(&hex)

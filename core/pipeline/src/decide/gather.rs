@@ -12,7 +12,7 @@ use toile_core::{Cancel, Context, Known};
 
 /// A decision with the stage that it is of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Decided {
+pub struct StageDecision {
     /// The stage's id.
     pub stage: String,
     /// The decision.
@@ -20,7 +20,7 @@ pub struct Decided {
     pub decision: Decision,
 }
 
-impl Decided {
+impl StageDecision {
     /// What the user writes to turn it round, but for the option's own name:
     /// `stages.StaticEquilibrium.speed=0.01`.
     ///
@@ -39,7 +39,7 @@ impl Decided {
 /// has none.
 ///
 /// Errors: `until` or one of `also` names no stage of the pipeline.
-pub fn decisions(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Decided>, RunError> {
+pub fn decisions(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<StageDecision>, RunError> {
     let plan = plan(pipeline, options)?;
     let sizes = foresee(pipeline, &|_, _| None);
     let runs: Vec<bool> = plan.iter().map(Option::is_none).collect();
@@ -50,7 +50,7 @@ pub fn decisions(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Decide
             Some(reason) => vec![unasked(reason)],
             None => told(pipeline, index, &runs, &sizes),
         };
-        all.extend(of_stage.into_iter().map(|decision| Decided { stage: node.id.clone(), decision }));
+        all.extend(of_stage.into_iter().map(|decision| StageDecision { stage: node.id.clone(), decision }));
     }
     Ok(all)
 }

@@ -6,5 +6,5 @@ mod gather;
 mod tests;
 mod unasked;
 
-pub use gather::{Decided, decisions};
+pub use gather::{StageDecision, decisions};
 pub use toile_core::decide::*;

@@ -55,7 +55,7 @@ fn pipeline(painter: &str) -> Pipeline {
     load(&text, "vest.ron", Path::new("."), &registry, &[]).unwrap()
 }
 
-fn of(pipeline: &Pipeline, options: RunOptions) -> Vec<Decided> {
+fn of(pipeline: &Pipeline, options: RunOptions) -> Vec<StageDecision> {
     decisions(pipeline, &options).unwrap()
 }
 

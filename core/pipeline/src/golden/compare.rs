@@ -1,10 +1,10 @@
 //! Where two sheets differ, first stage first.
 
-use super::{Section, Sheet, SheetMeasure, made_by};
+use super::{GoldenSheet, SheetMeasure, SheetSection, made_by};
 
 /// One measure, or one whole artifact, that is not as it was.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Difference {
+pub struct GoldenDifference {
     /// The stage's id.
     pub stage: String,
     /// The section's title.
@@ -32,7 +32,7 @@ pub struct Comparison {
     /// Whose bits the golden has.
     pub arithmetic: Arithmetic,
     /// Differences beyond tolerance, in the order of the pipeline.
-    pub differences: Vec<Difference>,
+    pub differences: Vec<GoldenDifference>,
     /// Titles of the sections whose bits moved within tolerance.
     pub moved: Vec<String>,
     /// The stage from which on bits moved, within tolerance or not: where the cause lies, if the
@@ -51,7 +51,7 @@ impl Comparison {
 }
 
 /// Compares a run with its golden.
-pub fn compare(golden: &Sheet, now: &Sheet) -> Comparison {
+pub fn compare(golden: &GoldenSheet, now: &GoldenSheet) -> Comparison {
     let (arithmetic, changes) = (arithmetic(golden, now), made_by::changes(golden, now));
     let mut found = Comparison { arithmetic, changes, ..Comparison::default() };
     for new in &now.sections {
@@ -68,7 +68,7 @@ pub fn compare(golden: &Sheet, now: &Sheet) -> Comparison {
     found
 }
 
-fn arithmetic(golden: &Sheet, now: &Sheet) -> Arithmetic {
+fn arithmetic(golden: &GoldenSheet, now: &GoldenSheet) -> Arithmetic {
     match (golden.arithmetic.as_str(), now.arithmetic.as_str()) {
         ("", _) | (_, "") => Arithmetic::Unknown,
         (was, is) if was == is => Arithmetic::Same,
@@ -76,11 +76,11 @@ fn arithmetic(golden: &Sheet, now: &Sheet) -> Arithmetic {
     }
 }
 
-fn difference(section: &Section, message: String) -> Difference {
-    Difference { stage: section.stage.clone(), section: section.title(), message }
+fn difference(section: &SheetSection, message: String) -> GoldenDifference {
+    GoldenDifference { stage: section.stage.clone(), section: section.title(), message }
 }
 
-fn compare_sections(old: &Section, new: &Section, found: &mut Comparison) {
+fn compare_sections(old: &SheetSection, new: &SheetSection, found: &mut Comparison) {
     let before = found.differences.len();
     if old.digest != new.digest {
         found.moves_from.get_or_insert_with(|| new.stage.clone());
@@ -104,7 +104,7 @@ fn compare_sections(old: &Section, new: &Section, found: &mut Comparison) {
 }
 
 /// Why the surfaces of two sections differ; `None` within tolerance.
-fn surfaces(old: &Section, new: &Section, arithmetic: Arithmetic) -> Option<String> {
+fn surfaces(old: &SheetSection, new: &SheetSection, arithmetic: Arithmetic) -> Option<String> {
     match (&old.surface, &new.surface) {
         (Some(was), Some(is)) => was.apart(is, arithmetic),
         (None, Some(_)) => Some("its surface is not in the golden sheet".into()),

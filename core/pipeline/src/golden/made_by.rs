@@ -1,7 +1,7 @@
 //! What a sheet was made by: every stage with its version and its parameters, so that a difference
 //! can be told to be the user's own.
 
-use super::Sheet;
+use super::GoldenSheet;
 use crate::load::{Pipeline, differing};
 
 /// A stage that made something of a sheet.
@@ -55,7 +55,7 @@ impl MadeBy {
     }
 }
 
-impl Sheet {
+impl GoldenSheet {
     /// The sheet with what its artifacts are made by in this pipeline.
     #[must_use]
     pub fn made_by(mut self, pipeline: &Pipeline) -> Self {
@@ -73,7 +73,7 @@ impl Sheet {
 
 /// What is made by other parameters, or by another version of a stage, than in the golden; nothing
 /// of a golden that does not say.
-pub(super) fn changes(golden: &Sheet, now: &Sheet) -> Vec<String> {
+pub(super) fn changes(golden: &GoldenSheet, now: &GoldenSheet) -> Vec<String> {
     let change = |was: &MadeBy| {
         let is = now.stages.iter().find(|is| is.id == was.id);
         is.map_or_else(Vec::new, |is| was.changes(is))

@@ -32,9 +32,9 @@ mod made_by;
 mod surface;
 mod text;
 
-pub use compare::{Arithmetic, Comparison, Difference, compare};
+pub use compare::{Arithmetic, Comparison, GoldenDifference, compare};
 pub use made_by::MadeBy;
-pub use surface::{PanelPlaces, Place, Surface, Tolerance};
+pub use surface::{ClothPlace, GoldenSurface, PanelPlaces, PlaceTolerance};
 pub use text::{SheetError, parse};
 
 use crate::run::typed;
@@ -45,7 +45,7 @@ use toile_core::{ArtifactType, PortValue};
 
 /// The measures of one artifact.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Section {
+pub struct SheetSection {
     /// The stage's id.
     pub stage: String,
     /// The artifact's kind.
@@ -55,12 +55,12 @@ pub struct Section {
     /// Its measures.
     pub measures: Vec<SheetMeasure>,
     /// Places of its surface; none but for a garment.
-    pub surface: Option<Surface>,
+    pub surface: Option<GoldenSurface>,
     /// The start of its content's digest.
     pub digest: String,
 }
 
-impl Section {
+impl SheetSection {
     /// The heading without its brackets.
     pub fn title(&self) -> String {
         let title = format!("{} {} {}", self.stage, self.kind.replace(' ', "_"), self.entry);
@@ -89,36 +89,36 @@ impl From<Measure> for SheetMeasure {
 
 /// The measures of a whole run.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Sheet {
+pub struct GoldenSheet {
     /// What stands for the arithmetic of the machine; empty where nothing is known of it.
     pub arithmetic: String,
     /// What its artifacts were made by, in the order of the pipeline; empty where nothing is known
     /// of it.
     pub stages: Vec<MadeBy>,
     /// Artifact by artifact, in the order in which they were made.
-    pub sections: Vec<Section>,
+    pub sections: Vec<SheetSection>,
 }
 
-impl Sheet {
+impl GoldenSheet {
     /// The sheet of a run. Written files are left out: they hold times.
     pub fn of(log: &RunLog, arithmetic: &str) -> Self {
-        Self::made(log, arithmetic, &|_, garment| Surface::of(garment))
+        Self::made(log, arithmetic, &|_, garment| GoldenSurface::of(garment))
     }
 
     /// The sheet of a run with the places of the golden that it is held against.
-    pub fn against(golden: &Sheet, log: &RunLog, arithmetic: &str) -> Self {
+    pub fn against(golden: &GoldenSheet, log: &RunLog, arithmetic: &str) -> Self {
         Self::made(log, arithmetic, &|title, garment| {
             let known = golden.sections.iter().find(|s| s.title() == title).and_then(|s| s.surface.as_ref());
-            known.map_or_else(|| Surface::of(garment), |surface| surface.again(garment))
+            known.map_or_else(|| GoldenSurface::of(garment), |surface| surface.again(garment))
         })
     }
 
-    fn made(log: &RunLog, arithmetic: &str, places: Places<'_>) -> Self {
+    fn made(log: &RunLog, arithmetic: &str, places: PlacesOfGarment<'_>) -> Self {
         let sections = log.stages.iter().flat_map(|r| {
             let values = r.outputs.iter().filter(|v| v.kind() != OutputFiles::KIND);
             values.flat_map(|v| sections(&r.id, v, places))
         });
-        Sheet { arithmetic: arithmetic.to_owned(), stages: Vec::new(), sections: sections.collect() }
+        GoldenSheet { arithmetic: arithmetic.to_owned(), stages: Vec::new(), sections: sections.collect() }
     }
 
     /// The first measure that is no finite number, by the title of its section and its name: no
@@ -130,13 +130,13 @@ impl Sheet {
 }
 
 /// Gives the places of a garment, by the title of its section.
-type Places<'a> = &'a dyn Fn(&str, &Garment) -> Surface;
+type PlacesOfGarment<'a> = &'a dyn Fn(&str, &Garment) -> GoldenSurface;
 
-fn sections(stage: &str, value: &PortValue, places: Places<'_>) -> Vec<Section> {
+fn sections(stage: &str, value: &PortValue, places: PlacesOfGarment<'_>) -> Vec<SheetSection> {
     let section = |(entry, artifact): (&str, &Arc<dyn Artifact>)| {
         let mut digester = Digester::new();
         artifact.digest(&mut digester);
-        let mut section = Section {
+        let mut section = SheetSection {
             stage: stage.to_owned(),
             kind: value.kind().0.to_owned(),
             entry: entry.to_owned(),

@@ -30,16 +30,16 @@ const GRAIN: f64 = 1e-4;
 
 /// On a machine of equal arithmetic. Equal code gives equal bits there, so this is only what a
 /// change may do to be a remark.
-const HERE: Tolerance = Tolerance { within_mm: 0.2, most_mm: 1.0 };
+const HERE: PlaceTolerance = PlaceTolerance { within_mm: 0.2, most_mm: 1.0 };
 /// On a machine of other arithmetic. Folds and friction have many states of rest: sums that are
 /// rounded otherwise moved the vest by 1.2 mm at 95 % and 9 mm at most (docs/reference/goldens.md).
-const ELSEWHERE: Tolerance = Tolerance { within_mm: 3.0, most_mm: 20.0 };
+const ELSEWHERE: PlaceTolerance = PlaceTolerance { within_mm: 3.0, most_mm: 20.0 };
 /// Half a unit of the last place that a sheet shows of each coordinate, together, mm.
 const SHEET_ROUNDING: f64 = 0.01;
 
 /// How far the places of a surface may move.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerance {
+pub struct PlaceTolerance {
     /// 95 % of the places move by no more, mm.
     pub within_mm: f64,
     /// No place moves by more, mm.
@@ -48,11 +48,11 @@ pub struct Tolerance {
 
 /// Where points of a garment's pattern lie, and how far they may move.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Surface {
+pub struct GoldenSurface {
     /// On a machine of the golden's arithmetic.
-    pub here: Tolerance,
+    pub here: PlaceTolerance,
     /// On another.
-    pub elsewhere: Tolerance,
+    pub elsewhere: PlaceTolerance,
     /// Panel by panel.
     pub panels: Vec<PanelPlaces>,
 }
@@ -63,12 +63,12 @@ pub struct PanelPlaces {
     /// The panel's name.
     pub name: String,
     /// Its places.
-    pub places: Vec<Place>,
+    pub places: Vec<ClothPlace>,
 }
 
 /// A point of the cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct ClothPlace {
     /// In the flat pattern, mm.
     pub flat: [f64; 2],
     /// In space, mm.
@@ -77,7 +77,7 @@ pub struct Place {
     pub beyond: f64,
 }
 
-impl Surface {
+impl GoldenSurface {
     /// Places of a garment, chosen by its panels' shapes alone.
     pub(super) fn of(garment: &Garment) -> Self {
         let whole: f64 = garment.panels.iter().map(|p| garment.panel_areas(p).0).sum();
@@ -94,7 +94,7 @@ impl Surface {
         let places = |panel: &GarmentPanel| {
             let known = self.panels.iter().find(|p| p.name == panel.name);
             let lookup = Lookup::new(garment, panel);
-            let find = |place: &Place| lookup.as_ref()?.find(place.flat);
+            let find = |place: &ClothPlace| lookup.as_ref()?.find(place.flat);
             let places = known.iter().flat_map(|p| &p.places).filter_map(find).collect();
             PanelPlaces { name: panel.name.clone(), places }
         };
@@ -102,7 +102,7 @@ impl Surface {
     }
 
     fn with(panels: Vec<PanelPlaces>) -> Self {
-        Surface { here: HERE, elsewhere: ELSEWHERE, panels }
+        GoldenSurface { here: HERE, elsewhere: ELSEWHERE, panels }
     }
 
     /// How many places there are.
@@ -112,17 +112,17 @@ impl Surface {
 
     /// Why another surface differs, by the tolerance of this one for such arithmetic; `None` within
     /// it.
-    pub(super) fn apart(&self, now: &Surface, arithmetic: Arithmetic) -> Option<String> {
+    pub(super) fn apart(&self, now: &GoldenSurface, arithmetic: Arithmetic) -> Option<String> {
         if let Some(new) = now.panels.iter().find(|p| !self.panels.iter().any(|q| q.name == p.name)) {
             return Some(format!("its panel \"{}\" is not in the golden sheet", new.name));
         }
-        let mut moved: Vec<(f64, &str, Place, Place)> = Vec::new();
+        let mut moved: Vec<(f64, &str, ClothPlace, ClothPlace)> = Vec::new();
         for old in &self.panels {
             let Some(new) = now.panels.iter().find(|p| p.name == old.name) else {
                 return Some(format!("it has no panel \"{}\" any more", old.name));
             };
-            let same = |was: &Place| new.places.iter().find(|is| is.flat == was.flat).copied();
-            let found: Vec<Option<Place>> = old.places.iter().map(same).collect();
+            let same = |was: &ClothPlace| new.places.iter().find(|is| is.flat == was.flat).copied();
+            let found: Vec<Option<ClothPlace>> = old.places.iter().map(same).collect();
             let lost = found.iter().filter(|f| f.is_none()).count();
             if lost > 0 {
                 let of = old.places.len();
@@ -139,7 +139,7 @@ impl Surface {
 }
 
 /// What is said of places that moved.
-fn told(mut moved: Vec<(f64, &str, Place, Place)>, tolerance: Tolerance) -> Option<String> {
+fn told(mut moved: Vec<(f64, &str, ClothPlace, ClothPlace)>, tolerance: PlaceTolerance) -> Option<String> {
     moved.sort_by(|a, b| a.0.total_cmp(&b.0));
     let distances: Vec<f64> = moved.iter().map(|m| m.0).collect();
     let p95 = quantile(&distances, 0.95);
@@ -148,7 +148,7 @@ fn told(mut moved: Vec<(f64, &str, Place, Place)>, tolerance: Tolerance) -> Opti
     if near {
         return None;
     }
-    let Tolerance { within_mm, most_mm } = tolerance;
+    let PlaceTolerance { within_mm, most_mm } = tolerance;
     let at = |[x, y, z]: [f64; 3]| format!("({x:.1}, {y:.1}, {z:.1}) mm");
     let ([u, v], before, now) = (was.flat, at(was.space), at(is.space));
     Some(format!(
@@ -158,7 +158,7 @@ fn told(mut moved: Vec<(f64, &str, Place, Place)>, tolerance: Tolerance) -> Opti
 }
 
 /// How far a point moved; one beyond the mesh is as far as its nearest point and the way there.
-fn far(was: &Place, is: &Place) -> f64 {
+fn far(was: &ClothPlace, is: &ClothPlace) -> f64 {
     let square: f64 = was.space.iter().zip(is.space).map(|(a, b)| (a - b).powi(2)).sum();
     square.sqrt() + is.beyond
 }
@@ -178,16 +178,16 @@ impl<'a> Lookup<'a> {
         Some(Lookup { garment, triangles, locator: Locator::new(flat, REACH)? })
     }
 
-    fn find(&self, flat: [f64; 2]) -> Option<Place> {
+    fn find(&self, flat: [f64; 2]) -> Option<ClothPlace> {
         let found: Located = self.locator.find(Point2::from(flat.map(|c| c * 1e-3)))?;
         let corners = self.triangles[found.triangle].map(|v| self.garment.positions[v as usize]);
         let at = found.in_space(corners);
-        Some(Place { flat, space: [at.x, at.y, at.z].map(|c| c * 1e3), beyond: found.beyond * 1e3 })
+        Some(ClothPlace { flat, space: [at.x, at.y, at.z].map(|c| c * 1e3), beyond: found.beyond * 1e3 })
     }
 }
 
 /// The first places of the sequence that lie on the panel.
-fn chosen(garment: &Garment, panel: &GarmentPanel, count: usize) -> Vec<Place> {
+fn chosen(garment: &Garment, panel: &GarmentPanel, count: usize) -> Vec<ClothPlace> {
     let Some(lookup) = Lookup::new(garment, panel) else { return Vec::new() };
     let flat = &garment.rest[panel.vertices.clone()];
     let Some(first) = flat.first() else { return Vec::new() };
@@ -208,14 +208,14 @@ mod tests {
     use toile_core::artifact::Point3;
     use toile_core::testkit::dress;
 
-    fn apart(was: &Surface, is: &Surface) -> Option<String> {
+    fn apart(was: &GoldenSurface, is: &GoldenSurface) -> Option<String> {
         was.apart(is, Arithmetic::Same)
     }
 
     #[test]
     fn places_are_spread_over_every_panel_and_lie_where_the_cloth_does() {
         let garment = dress::garment();
-        let surface = Surface::of(&garment);
+        let surface = GoldenSurface::of(&garment);
         assert_eq!(surface.panels.iter().map(|p| p.places.len()).collect::<Vec<_>>(), [120, 120]);
         // The front lies in the plane z = 150 mm, 980 mm above the floor.
         for place in &surface.panels[0].places {
@@ -250,13 +250,13 @@ mod tests {
         let start = garment.panels[1].triangles.start;
         finer.triangles.drain(garment.panels[1].triangles.clone());
         finer.panels[1].triangles = start..finer.triangles.len();
-        let was = Surface::of(&garment);
+        let was = GoldenSurface::of(&garment);
         assert_eq!(apart(&was, &was.again(&finer)), None);
     }
 
     #[test]
     fn a_surface_that_moved_is_told_with_its_figure_and_its_place() {
-        let was = Surface::of(&dress::garment());
+        let was = GoldenSurface::of(&dress::garment());
         let moved = |by: f64, of: &str| {
             let mut garment = dress::garment();
             let panel = garment.panels.iter().find(|p| p.name == of).unwrap().vertices.clone();
@@ -271,7 +271,7 @@ mod tests {
 
     #[test]
     fn another_machine_has_more_room_and_not_all_of_it() {
-        let was = Surface::of(&dress::garment());
+        let was = GoldenSurface::of(&dress::garment());
         let moved = |by: f64| {
             let mut garment = dress::garment();
             garment.positions.iter_mut().for_each(|p| p.z += by * 1e-3);
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn a_fold_that_few_places_see_is_a_difference_as_well() {
-        let was = Surface::of(&dress::garment());
+        let was = GoldenSurface::of(&dress::garment());
         let mut garment = dress::garment();
         // A corner of the front, by 5 cm: fewer than 5 % of the places.
         let corner =
@@ -295,7 +295,7 @@ mod tests {
 
     #[test]
     fn panels_that_come_or_go_and_places_that_are_lost_are_told() {
-        let was = Surface::of(&dress::garment());
+        let was = GoldenSurface::of(&dress::garment());
         let mut renamed = dress::garment();
         renamed.panels[1].name = "rear".into();
         assert_eq!(

@@ -1,7 +1,7 @@
 //! A sheet as text and back.
 
-use super::surface::{PanelPlaces, Place, Surface, Tolerance};
-use super::{MadeBy, Section, Sheet, SheetMeasure};
+use super::surface::{ClothPlace, GoldenSurface, PanelPlaces, PlaceTolerance};
+use super::{GoldenSheet, MadeBy, SheetMeasure, SheetSection};
 use std::fmt::Write;
 
 /// A line of a sheet that cannot be read.
@@ -28,7 +28,7 @@ const FORM: &str = "a measure is `NAME = VALUE UNIT +- TOLERANCE`";
 const SURFACE_FORM: &str = "a surface is `surface = COUNT places +- TOLERANCE; elsewhere TOLERANCE`, a tolerance `0.2 mm at 95 %, 1 mm at most`";
 const PLACE_FORM: &str = "a place is five numbers: two in the pattern, three in space, mm";
 
-impl std::fmt::Display for Sheet {
+impl std::fmt::Display for GoldenSheet {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if !self.arithmetic.is_empty() {
             writeln!(f, "arithmetic = {}", self.arithmetic)?;
@@ -56,13 +56,14 @@ impl std::fmt::Display for Sheet {
     }
 }
 
-fn write_surface(f: &mut std::fmt::Formatter<'_>, surface: &Surface) -> std::fmt::Result {
-    let words = |t: Tolerance| format!("{} mm at 95 %, {} mm at most", tidy(t.within_mm), tidy(t.most_mm));
+fn write_surface(f: &mut std::fmt::Formatter<'_>, surface: &GoldenSurface) -> std::fmt::Result {
+    let words =
+        |t: PlaceTolerance| format!("{} mm at 95 %, {} mm at most", tidy(t.within_mm), tidy(t.most_mm));
     let (here, elsewhere) = (words(surface.here), words(surface.elsewhere));
     writeln!(f, "surface = {} places +- {here}; elsewhere {elsewhere}", surface.count())?;
     for panel in &surface.panels {
         writeln!(f, "panel {}", panel.name)?;
-        for Place { flat: [u, v], space, .. } in &panel.places {
+        for ClothPlace { flat: [u, v], space, .. } in &panel.places {
             let [x, y, z] = space.map(hundredths);
             writeln!(f, "{u} {v} {x} {y} {z}")?;
         }
@@ -98,8 +99,8 @@ fn short(text: String) -> String {
 /// Errors: the first line that is neither a heading, a measure, a surface, a place of it, a digest,
 /// empty nor a comment; a value that is no finite number; a tolerance that is negative or so wide
 /// that nothing would be seen; what is given twice.
-pub fn parse(text: &str) -> Result<Sheet, SheetError> {
-    let mut reader = Reader::default();
+pub fn parse(text: &str) -> Result<GoldenSheet, SheetError> {
+    let mut reader = SheetReader::default();
     let mut last = 1;
     for (i, line) in text.lines().enumerate() {
         last = i + 1;
@@ -111,13 +112,13 @@ pub fn parse(text: &str) -> Result<Sheet, SheetError> {
 
 /// A sheet on its way.
 #[derive(Default)]
-struct Reader {
-    sheet: Sheet,
+struct SheetReader {
+    sheet: GoldenSheet,
     /// Places that the surface at work announced.
     announced: Option<usize>,
 }
 
-impl Reader {
+impl SheetReader {
     fn line(&mut self, line: &str) -> Result<(), String> {
         if line.is_empty() || line.starts_with('#') {
             return Ok(());
@@ -165,7 +166,7 @@ impl Reader {
     }
 
     /// The section at work.
-    fn section(&mut self) -> Result<&mut Section, String> {
+    fn section(&mut self) -> Result<&mut SheetSection, String> {
         self.sheet.sections.last_mut().ok_or_else(|| "a measure stands before the first heading".to_owned())
     }
 
@@ -216,14 +217,14 @@ impl Reader {
         let surface = self.section()?.surface.as_mut();
         let panel = surface.and_then(|s| s.panels.last_mut());
         let panel = panel.ok_or("a place stands before the first `panel NAME`")?;
-        panel.places.push(Place { flat: [*u, *v], space: [*x, *y, *z], beyond: 0.0 });
+        panel.places.push(ClothPlace { flat: [*u, *v], space: [*x, *y, *z], beyond: 0.0 });
         Ok(())
     }
 
     /// Ends the surface at work: a sheet that lost places does not see what it saw.
     fn whole(&mut self) -> Result<(), String> {
         let Some(announced) = self.announced.take() else { return Ok(()) };
-        let found = self.section()?.surface.as_ref().map_or(0, Surface::count);
+        let found = self.section()?.surface.as_ref().map_or(0, GoldenSurface::count);
         match found == announced {
             true => Ok(()),
             false => Err(format!("the surface above announces {announced} places and has {found}")),
@@ -231,12 +232,12 @@ impl Reader {
     }
 }
 
-fn heading(title: &str) -> Option<Section> {
+fn heading(title: &str) -> Option<SheetSection> {
     let mut words = title.splitn(3, ' ');
     let mut word = || words.next().filter(|word| !word.is_empty());
     let (stage, kind) = (word()?.to_owned(), word()?.replace('_', " "));
     let entry = words.next().unwrap_or("").to_owned();
-    Some(Section { stage, kind, entry, measures: Vec::new(), surface: None, digest: String::new() })
+    Some(SheetSection { stage, kind, entry, measures: Vec::new(), surface: None, digest: String::new() })
 }
 
 fn measure(name: &str, text: &str) -> Result<SheetMeasure, String> {
@@ -249,7 +250,7 @@ fn measure(name: &str, text: &str) -> Result<SheetMeasure, String> {
     Ok(SheetMeasure { name: name.to_owned(), value, unit: unit.to_owned(), tolerance })
 }
 
-fn surface(text: &str) -> Result<(Surface, usize), String> {
+fn surface(text: &str) -> Result<(GoldenSurface, usize), String> {
     let form = || SURFACE_FORM.to_owned();
     let (count, rest) = text.split_once(" places +- ").ok_or_else(form)?;
     let (here, elsewhere) = rest.split_once("; elsewhere ").ok_or_else(form)?;
@@ -262,9 +263,12 @@ fn surface(text: &str) -> Result<(Surface, usize), String> {
         let most = most.strip_suffix(" mm at most").ok_or_else(form)?;
         let [widest, farthest] = MOST_SURFACE_MM;
         let within_mm = tolerated("surface", within, widest, SURFACE_FORM)?;
-        Ok::<_, String>(Tolerance { within_mm, most_mm: tolerated("surface", most, farthest, SURFACE_FORM)? })
+        Ok::<_, String>(PlaceTolerance {
+            within_mm,
+            most_mm: tolerated("surface", most, farthest, SURFACE_FORM)?,
+        })
     };
-    Ok((Surface { here: read(here)?, elsewhere: read(elsewhere)?, panels: Vec::new() }, count))
+    Ok((GoldenSurface { here: read(here)?, elsewhere: read(elsewhere)?, panels: Vec::new() }, count))
 }
 
 /// A tolerance from 0 to `most`.

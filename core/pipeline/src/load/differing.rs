@@ -1,7 +1,7 @@
 //! Where two values differ, field by field.
 
 use super::parse;
-use crate::load::syntax::tree::{Bracket, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, ValueShape, ValueTree};
 use std::ops::Range;
 
 /// A part of a value that is otherwise in another.
@@ -28,9 +28,9 @@ pub fn differing(was: &str, is: &str) -> Vec<Differing> {
     found
 }
 
-type At<'a> = (&'a str, &'a Tree);
+type TextAndTree<'a> = (&'a str, &'a ValueTree);
 
-fn walk(path: &str, a: At<'_>, b: At<'_>, found: &mut Vec<Differing>) {
+fn walk(path: &str, a: TextAndTree<'_>, b: TextAndTree<'_>, found: &mut Vec<Differing>) {
     let (was, is) = (written(a.0, &a.1.span), written(b.0, &b.1.span));
     if was == is {
         return;
@@ -39,8 +39,8 @@ fn walk(path: &str, a: At<'_>, b: At<'_>, found: &mut Vec<Differing>) {
         found.push(Differing { path: path.to_owned(), was: Some(was), is: Some(is) });
         return;
     }
-    let keys = |(text, tree): At<'_>| {
-        let key = |(i, e): (usize, &crate::load::syntax::tree::Entry)| {
+    let keys = |(text, tree): TextAndTree<'_>| {
+        let key = |(i, e): (usize, &crate::load::syntax::tree::GroupEntry)| {
             e.key.as_ref().map_or_else(|| i.to_string(), |k| written(text, k).trim_matches('"').to_owned())
         };
         tree.entries().iter().enumerate().map(key).collect::<Vec<String>>()
@@ -49,7 +49,8 @@ fn walk(path: &str, a: At<'_>, b: At<'_>, found: &mut Vec<Differing>) {
     all.extend(keys(b).into_iter().filter(|key| a.1.entry(a.0, key).is_none()));
     for key in all {
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        let text = |(text, tree): At<'_>| tree.entry(text, &key).map(|e| written(text, &e.value.span));
+        let text =
+            |(text, tree): TextAndTree<'_>| tree.entry(text, &key).map(|e| written(text, &e.value.span));
         match (a.1.entry(a.0, &key), b.1.entry(b.0, &key)) {
             (Some(x), Some(y)) => walk(&path, (a.0, &x.value), (b.0, &y.value), found),
             _ => found.push(Differing { path, was: text(a), is: text(b) }),
@@ -58,9 +59,9 @@ fn walk(path: &str, a: At<'_>, b: At<'_>, found: &mut Vec<Differing>) {
 }
 
 /// The kind of group that a value is; none where it is no group.
-fn head((text, tree): At<'_>) -> Option<(String, Bracket)> {
+fn head((text, tree): TextAndTree<'_>) -> Option<(String, Bracket)> {
     match &tree.shape {
-        Shape::Group { name, bracket, .. } => {
+        ValueShape::Group { name, bracket, .. } => {
             Some((name.as_ref().map_or_else(String::new, |n| written(text, n)), *bracket))
         }
         _ => None,

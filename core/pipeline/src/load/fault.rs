@@ -106,10 +106,10 @@ impl Faults {
 
     /// The machine form.
     pub fn records(&self) -> Vec<FaultRecord> {
-        let lines = Lines::of(&self.text);
+        let lines = LineStarts::of(&self.text);
         let record = |f: &Fault| {
             let (line, column) = match &f.option {
-                Some(option) => Lines::of(option).position(option, f.start()),
+                Some(option) => LineStarts::of(option).position(option, f.start()),
                 None => lines.position(&self.text, f.start()),
             };
             FaultRecord {
@@ -131,8 +131,8 @@ impl Faults {
         let mut out = String::new();
         for (fault, line) in self.faults.iter().zip(self.lines()).take(MAX_DRAWN) {
             out.push_str(if out.is_empty() { "" } else { "\n" });
-            let drawn =
-                self.can_draw(fault) && handler.render_report(&mut out, &Drawn { fault, of: self }).is_ok();
+            let drawn = self.can_draw(fault)
+                && handler.render_report(&mut out, &DrawnFault { fault, of: self }).is_ok();
             if !drawn {
                 let _ = writeln!(out, "  {line}");
             }
@@ -184,13 +184,13 @@ impl Display for Faults {
 impl std::error::Error for Faults {}
 
 /// Where each line of a text starts.
-pub(super) struct Lines(Vec<usize>);
+pub(super) struct LineStarts(Vec<usize>);
 
-impl Lines {
+impl LineStarts {
     /// The lines of `text`.
     pub(super) fn of(text: &str) -> Self {
         let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);
-        Lines(std::iter::once(0).chain(ends).collect())
+        LineStarts(std::iter::once(0).chain(ends).collect())
     }
 
     /// Line and column (characters) of a byte, both from 1. A byte order mark has no column.
@@ -203,26 +203,26 @@ impl Lines {
 }
 
 /// One fault as miette draws it.
-struct Drawn<'a> {
+struct DrawnFault<'a> {
     fault: &'a Fault,
     of: &'a Faults,
 }
 
-impl fmt::Debug for Drawn<'_> {
+impl fmt::Debug for DrawnFault<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         self.fault.fmt(f)
     }
 }
 
-impl Display for Drawn<'_> {
+impl Display for DrawnFault<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.write_str(&self.fault.message)
     }
 }
 
-impl std::error::Error for Drawn<'_> {}
+impl std::error::Error for DrawnFault<'_> {}
 
-impl Diagnostic for Drawn<'_> {
+impl Diagnostic for DrawnFault<'_> {
     fn severity(&self) -> Option<Severity> {
         Some(Severity::Error)
     }
@@ -247,7 +247,7 @@ impl Diagnostic for Drawn<'_> {
     }
 }
 
-impl SourceCode for Drawn<'_> {
+impl SourceCode for DrawnFault<'_> {
     fn read_span<'a>(
         &'a self,
         span: &miette::SourceSpan,

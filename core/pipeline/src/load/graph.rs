@@ -23,28 +23,28 @@ use toile_core::{Arity, Card, Feed, InPort, Kind, Registry, Role, Section, Secti
 const MAX_PLACES: usize = 4;
 
 /// An output port: stage and port index.
-type Source = (usize, usize);
+type PortSource = (usize, usize);
 
 /// Finds the feeds of every stage; what does not fit becomes a fault.
 pub(super) fn connect(drafts: &[Draft], registry: &Registry, faults: &mut Vec<Fault>) -> Vec<Vec<Feed>> {
     let ids = drafts.iter().enumerate().rev().map(|(i, d)| (d.id.as_str(), i)).collect();
-    let mut graph = Graph {
+    let mut graph = StageGraph {
         drafts,
         registry,
         faults,
         ids,
         fed: Vec::new(),
-        live: Makers::new(),
-        roots: Makers::new(),
+        live: KindMakers::new(),
+        roots: KindMakers::new(),
         blind: false,
     };
     (0..drafts.len()).for_each(|i| graph.add(i));
     graph.fed
 }
 
-type Makers = BTreeMap<Kind, Vec<Source>>;
+type KindMakers = BTreeMap<Kind, Vec<PortSource>>;
 
-struct Graph<'a> {
+struct StageGraph<'a> {
     drafts: &'a [Draft],
     registry: &'a Registry,
     faults: &'a mut Vec<Fault>,
@@ -52,14 +52,14 @@ struct Graph<'a> {
     /// The feeds of the stages so far.
     fed: Vec<Vec<Feed>>,
     /// Makers whose output is not superseded.
-    live: Makers,
+    live: KindMakers,
     /// Makers that made their kind from other kinds.
-    roots: Makers,
+    roots: KindMakers,
     /// True after a stage of which nothing is known: what is missing may be its.
     blind: bool,
 }
 
-impl<'a> Graph<'a> {
+impl<'a> StageGraph<'a> {
     /// Feeds stage `i`, then adds what it makes.
     fn add(&mut self, i: usize) {
         let drafts = self.drafts;
@@ -146,12 +146,12 @@ impl<'a> Graph<'a> {
             return Feed::RunLog;
         }
         let Some(from) = from else { return Feed::Nothing };
-        let named: Vec<Source> =
+        let named: Vec<PortSource> =
             from.iter().filter_map(|m| Some((*m, self.output(*m, port.kind)?))).collect();
         let makers = if port.original { &self.roots } else { &self.live };
         let typed = makers.get(&port.kind).map_or(&[][..], Vec::as_slice);
         let candidates = if named.is_empty() { typed } else { &named };
-        let fed = |source: &Source| {
+        let fed = |source: &PortSource| {
             let (node, port) = if port.sewn { self.sewn(*source, port.kind) } else { *source };
             Feed::Node { node, port }
         };
@@ -173,7 +173,7 @@ impl<'a> Graph<'a> {
     }
 
     /// What flatteners were given, where a source is one of theirs.
-    fn sewn(&self, source: Source, kind: Kind) -> Source {
+    fn sewn(&self, source: PortSource, kind: Kind) -> PortSource {
         before_flatteners(source, kind, |node| Some((self.drafts[node].card.as_ref()?, self.fed.get(node)?)))
     }
 
@@ -212,7 +212,7 @@ impl<'a> Graph<'a> {
     }
 
     /// Several stages make the kind.
-    fn ambiguous(&self, i: usize, kind: Kind, makers: &[Source]) -> Fault {
+    fn ambiguous(&self, i: usize, kind: Kind, makers: &[PortSource]) -> Fault {
         let (taker, kind_words) = (&self.drafts[i], a(kind));
         let names: Vec<String> =
             makers.iter().take(MAX_PLACES).map(|(m, _)| format!("`{}`", self.drafts[*m].id)).collect();
@@ -250,11 +250,12 @@ impl<'a> Graph<'a> {
 
     /// The live makers of a kind that have taken something of which a stage with these feeds takes
     /// a later state.
-    fn stale(&self, kind: Kind, card: &Card, feeds: &[Feed]) -> Vec<Source> {
-        let is_live = |kind: Kind, source: &Source| self.live.get(&kind).is_some_and(|l| l.contains(source));
+    fn stale(&self, kind: Kind, card: &Card, feeds: &[Feed]) -> Vec<PortSource> {
+        let is_live =
+            |kind: Kind, source: &PortSource| self.live.get(&kind).is_some_and(|l| l.contains(source));
         let taken: BTreeSet<Kind> =
             sources(card, feeds).filter(|(k, s)| is_live(*k, s)).map(|(k, _)| k).collect();
-        let was_remade = |(maker, _): &&Source| {
+        let was_remade = |(maker, _): &&PortSource| {
             let (Some(card), Some(fed)) = (&self.drafts[*maker].card, self.fed.get(*maker)) else {
                 return false;
             };
@@ -314,7 +315,7 @@ pub(crate) fn before_flatteners<'a>(
 }
 
 /// What `feeds` bring to a card's ports, by kind; originals are left out.
-fn sources<'a>(card: &'a Card, feeds: &'a [Feed]) -> impl Iterator<Item = (Kind, Source)> + 'a {
+fn sources<'a>(card: &'a Card, feeds: &'a [Feed]) -> impl Iterator<Item = (Kind, PortSource)> + 'a {
     card.inputs.iter().zip(feeds).filter_map(|(port, feed)| match feed {
         Feed::Node { node, port: output } if !port.original => Some((port.kind, (*node, *output))),
         _ => None,

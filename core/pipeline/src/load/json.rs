@@ -4,7 +4,7 @@
 
 use super::fault::Faults;
 use super::parse;
-use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, GroupEntry, ValueShape, ValueTree};
 use serde_json::{Map, Value};
 use toile_core::param::ron_options;
 
@@ -16,17 +16,17 @@ pub fn to_json(text: &str, file: &str) -> Result<Value, Faults> {
     Ok(value(text, &tree))
 }
 
-fn value(text: &str, tree: &Tree) -> Value {
+fn value(text: &str, tree: &ValueTree) -> Value {
     let own = text.get(tree.span.clone()).unwrap_or("");
     match &tree.shape {
-        Shape::Literal | Shape::Broken => literal(own),
-        Shape::Name => name(own),
-        Shape::Group { name: None, bracket: Bracket::Square, entries, .. } => list(text, entries),
-        Shape::Group { name: None, entries, .. } if entries.iter().all(|e| e.key.is_none()) => {
+        ValueShape::Literal | ValueShape::Broken => literal(own),
+        ValueShape::Name => name(own),
+        ValueShape::Group { name: None, bracket: Bracket::Square, entries, .. } => list(text, entries),
+        ValueShape::Group { name: None, entries, .. } if entries.iter().all(|e| e.key.is_none()) => {
             list(text, entries)
         }
-        Shape::Group { name: None, entries, .. } => fields(text, entries),
-        Shape::Group { name: Some(name), entries, .. } => {
+        ValueShape::Group { name: None, entries, .. } => fields(text, entries),
+        ValueShape::Group { name: Some(name), entries, .. } => {
             named(text, text.get(name.clone()).unwrap_or(""), entries)
         }
     }
@@ -47,13 +47,13 @@ fn name(own: &str) -> Value {
     }
 }
 
-fn list(text: &str, entries: &[Entry]) -> Value {
+fn list(text: &str, entries: &[GroupEntry]) -> Value {
     entries.iter().map(|e| value(text, &e.value)).collect()
 }
 
 /// `field: value` or `"key": value`.
-fn fields(text: &str, entries: &[Entry]) -> Value {
-    let key = |e: &Entry| {
+fn fields(text: &str, entries: &[GroupEntry]) -> Value {
+    let key = |e: &GroupEntry| {
         let own = text.get(e.key.clone()?)?;
         Some(ron_options().from_str::<String>(own).unwrap_or_else(|_| own.to_owned()))
     };
@@ -61,7 +61,7 @@ fn fields(text: &str, entries: &[Entry]) -> Value {
     Value::Object(pairs.collect::<Map<_, _>>())
 }
 
-fn named(text: &str, name: &str, entries: &[Entry]) -> Value {
+fn named(text: &str, name: &str, entries: &[GroupEntry]) -> Value {
     let inner = match entries {
         [one] if one.key.is_none() => value(text, &one.value),
         [first, ..] if first.key.is_none() => list(text, entries),

@@ -126,7 +126,7 @@ pub fn load_with(
     }
     let mut faults: Vec<Fault> = std::mem::take(&mut applied.refused).into_iter().map(|(_, f)| f).collect();
     faults.append(&mut refused);
-    let told = |faults: Vec<Fault>, origin: &origin::Origin| -> Vec<Fault> {
+    let told = |faults: Vec<Fault>, origin: &origin::TextChanges| -> Vec<Fault> {
         faults.into_iter().map(|fault| origin.told(fault)).chain(known.clone()).collect()
     };
     let lacks_plugin = faults.iter().any(|f| f.code == plugins::REFUSED);
@@ -208,7 +208,7 @@ fn check(
     text: &str,
     (registry, lacks_plugin): (&Registry, bool),
     faults: &mut Vec<Fault>,
-) -> Option<(read::Read, Vec<syntax::draft::Draft>, Vec<Vec<Feed>>)> {
+) -> Option<(read::FileContents, Vec<syntax::draft::Draft>, Vec<Vec<Feed>>)> {
     let (tree, mut of_syntax) = syntax::repair::read(text);
     faults.append(&mut of_syntax);
     let mut tree = tree?;
@@ -229,13 +229,13 @@ fn check(
 pub fn fields_of(params: &str) -> BTreeMap<String, String> {
     let Ok(tree) = parse(params) else { return BTreeMap::new() };
     let text = |span: &Range<usize>| params.get(span.clone()).unwrap_or("").to_owned();
-    let field = |e: &syntax::tree::Entry| Some((text(e.key.as_ref()?), text(&e.value.span)));
+    let field = |e: &syntax::tree::GroupEntry| Some((text(e.key.as_ref()?), text(&e.value.span)));
     tree.entries().iter().filter_map(field).collect()
 }
 
 /// Every text in a stage's parameters.
 pub(crate) fn texts_of(params: &str) -> Vec<String> {
-    fn walk(params: &str, tree: &syntax::tree::Tree, texts: &mut Vec<String>) {
+    fn walk(params: &str, tree: &syntax::tree::ValueTree, texts: &mut Vec<String>) {
         let text = params.get(tree.span.clone()).filter(|t| t.starts_with(['"', 'r']));
         texts.extend(text.and_then(|t| toile_core::param::ron_options().from_str::<String>(t).ok()));
         tree.entries().iter().for_each(|e| walk(params, &e.value, texts));
@@ -247,7 +247,7 @@ pub(crate) fn texts_of(params: &str) -> Vec<String> {
     texts
 }
 
-pub(crate) fn parse(text: &str) -> Result<syntax::tree::Tree, Fault> {
+pub(crate) fn parse(text: &str) -> Result<syntax::tree::ValueTree, Fault> {
     syntax::parser::parse(text).map_err(|e| syntax::repair::plain(&e))
 }
 

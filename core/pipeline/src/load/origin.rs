@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// What was put into a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Region {
+pub(super) struct InsertedText {
     /// Where it stands now.
     pub(super) span: Range<usize>,
     /// The length of what stands in it before its value, a key with its colon.
@@ -39,14 +39,14 @@ struct Splice {
 
 /// The changes of a text, in their order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Origin {
-    regions: Vec<Region>,
+pub(super) struct TextChanges {
+    regions: Vec<InsertedText>,
     splices: Vec<Splice>,
 }
 
-impl Origin {
+impl TextChanges {
     /// Notes that `at` was replaced by a text of the length `is`, in which the region stands.
-    pub(super) fn note(&mut self, at: &Range<usize>, is: usize, region: Region) {
+    pub(super) fn note(&mut self, at: &Range<usize>, is: usize, region: InsertedText) {
         let moved = |x: usize| if x >= at.end { x + is - at.len() } else { x.min(at.start) };
         for r in &mut self.regions {
             r.span = moved(r.span.start)..moved(r.span.end);
@@ -94,7 +94,7 @@ impl Origin {
     }
 
     /// The last change in which a place lies.
-    fn region(&self, at: usize) -> Option<&Region> {
+    fn region(&self, at: usize) -> Option<&InsertedText> {
         self.regions.iter().rev().find(|r| r.span.contains(&at))
     }
 
@@ -113,7 +113,7 @@ fn covers(outer: &Range<usize>, inner: &Range<usize>) -> bool {
 }
 
 /// A label in an option's value; one in the key is put at all of the option.
-fn in_option(region: &Region, option: &str, value: usize, label: &Label) -> Range<usize> {
+fn in_option(region: &InsertedText, option: &str, value: usize, label: &Label) -> Range<usize> {
     let from = region.span.start + region.before;
     let whole = value..option.len();
     match label.span.start.checked_sub(from) {

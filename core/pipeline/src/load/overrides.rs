@@ -5,13 +5,13 @@
 //! there is replaced; a field that is not there is put in as the first of its group.
 
 use super::fault::Fault;
-use super::origin::{Origin, Region, Writer};
+use super::origin::{InsertedText, TextChanges, Writer};
 use super::parse;
 use super::qualities::Quality;
 use super::read::{self, GENERIC};
 use super::setting::Override;
 use crate::load::syntax::draft::Draft;
-use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, GroupEntry, ValueShape, ValueTree};
 use std::ops::Range;
 use toile_core::Registry;
 
@@ -74,7 +74,7 @@ const OPTION: &str = "--set ";
 pub(super) struct Applied {
     pub(super) text: String,
     /// Where its parts come from.
-    pub(super) origin: Origin,
+    pub(super) origin: TextChanges,
     /// Overrides that could not be applied, by number.
     pub(super) refused: Vec<(usize, Fault)>,
 }
@@ -98,7 +98,7 @@ impl Applied {
         let Edit { at, before, value, after } = edit;
         self.text.replace_range(at.clone(), &format!("{before}{value}{after}"));
         let span = at.start..at.start + before.len() + value.len();
-        let region = Region { span, before: before.len(), number, writer };
+        let region = InsertedText { span, before: before.len(), number, writer };
         self.origin.note(at, before.len() + value.len() + after.len(), region);
     }
 }
@@ -117,7 +117,7 @@ impl Edit {
     }
 
     /// Puts `key: value` first into a group.
-    fn insert(inside: usize, entries: &[Entry], key: &str, value: &str) -> Self {
+    fn insert(inside: usize, entries: &[GroupEntry], key: &str, value: &str) -> Self {
         let after = if entries.is_empty() { "" } else { ", " };
         Edit {
             at: inside..inside,
@@ -129,13 +129,13 @@ impl Edit {
 }
 
 /// What one override does to the text, and where in its value the value proper begins.
-fn edit(text: &str, tree: &Tree, registry: &Registry, given: Given<'_>) -> Result<(Edit, usize), Fault> {
+fn edit(text: &str, tree: &ValueTree, registry: &Registry, given: Given<'_>) -> Result<(Edit, usize), Fault> {
     let o = given.o;
     let value = parse(&o.value).map_err(|e| bad_value(given, &e))?;
     let read = read::file(text, tree, (registry, false), &mut Vec::new());
     let segments: Vec<&str> = o.path.split('.').collect();
     let value_at = value.span.start;
-    let walk = Walk { text, registry, given, value: &o.value[value.span], segments: &segments };
+    let walk = OverrideWalk { text, registry, given, value: &o.value[value.span], segments: &segments };
     Ok((walk.top(tree, &read.sections, &read.stages)?, value_at))
 }
 
@@ -154,7 +154,7 @@ fn bad_value(given: Given<'_>, e: &Fault) -> Fault {
 }
 
 /// One override on its way down the tree.
-struct Walk<'a> {
+struct OverrideWalk<'a> {
     text: &'a str,
     registry: &'a Registry,
     given: Given<'a>,
@@ -162,12 +162,12 @@ struct Walk<'a> {
     segments: &'a [&'a str],
 }
 
-impl Walk<'_> {
+impl OverrideWalk<'_> {
     /// The first segment: a field of the file.
-    fn top(&self, tree: &Tree, sections: &[Draft], stages: &[Draft]) -> Result<Edit, Fault> {
+    fn top(&self, tree: &ValueTree, sections: &[Draft], stages: &[Draft]) -> Result<Edit, Fault> {
         let field = self.segments.first().copied().unwrap_or("");
         let known = read::top_level(self.registry);
-        let Shape::Group { name: None, bracket: Bracket::Round, inside, entries } = &tree.shape else {
+        let ValueShape::Group { name: None, bracket: Bracket::Round, inside, entries } = &tree.shape else {
             return Err(self.fault(0, format!("there is no field `{field}`")));
         };
         if !known.contains(&field) {
@@ -192,7 +192,7 @@ impl Walk<'_> {
     }
 
     /// `stages.ID...`
-    fn in_list(&self, list: &Tree, stages: &[Draft]) -> Result<Edit, Fault> {
+    fn in_list(&self, list: &ValueTree, stages: &[Draft]) -> Result<Edit, Fault> {
         let id = self.segments[1];
         let Some(draft) = stages.iter().find(|d| d.id == id) else {
             let ids: Vec<&str> = stages.iter().map(|d| d.id.as_str()).collect();
@@ -206,18 +206,18 @@ impl Walk<'_> {
     }
 
     /// A parameter of a stage, at segment `i`.
-    fn in_stage(&self, i: usize, tree: &Tree, draft: &Draft) -> Result<Edit, Fault> {
+    fn in_stage(&self, i: usize, tree: &ValueTree, draft: &Draft) -> Result<Edit, Fault> {
         let field = self.segments[i];
         let params: Vec<&str> =
             draft.card.iter().flat_map(|c| &c.params).map(|p| p.name).chain(GENERIC).collect();
-        let Shape::Group { inside, entries, .. } = &tree.shape else {
+        let ValueShape::Group { inside, entries, .. } = &tree.shape else {
             return Err(self.fault(i - 1, format!("`{}` has no brackets", draft.name)));
         };
         if !params.contains(&field) {
             let message = format!("`{}` has no parameter `{field}`", draft.name);
             return Err(self.no_path(i, &message, &params));
         }
-        if let ([Entry { key: None, value }], Some(first)) = (entries.as_slice(), params.first()) {
+        if let ([GroupEntry { key: None, value }], Some(first)) = (entries.as_slice(), params.first()) {
             return match first == &field {
                 true => self.inside(i + 1, value),
                 // The one value without a name gets its name.
@@ -239,9 +239,9 @@ impl Walk<'_> {
     }
 
     /// A value, and what is in it, at segment `i`.
-    fn inside(&self, i: usize, tree: &Tree) -> Result<Edit, Fault> {
+    fn inside(&self, i: usize, tree: &ValueTree) -> Result<Edit, Fault> {
         let Some(segment) = self.segments.get(i) else { return Ok(Edit::replace(&tree.span, self.value)) };
-        let Shape::Group { bracket, inside, entries, .. } = &tree.shape else {
+        let ValueShape::Group { bracket, inside, entries, .. } = &tree.shape else {
             return Err(self.fault(i - 1, format!("`{}` has no parts", self.segments[i - 1])));
         };
         if let Some((_, value)) = self.entry(entries, segment) {
@@ -258,14 +258,14 @@ impl Walk<'_> {
     }
 
     /// The entry of that name, or of that number in a list.
-    fn entry<'t>(&self, entries: &'t [Entry], name: &str) -> Option<(&'t Range<usize>, &'t Tree)> {
+    fn entry<'t>(&self, entries: &'t [GroupEntry], name: &str) -> Option<(&'t Range<usize>, &'t ValueTree)> {
         let i = self.keys(entries).iter().position(|k| k == name)?;
         let entry = entries.get(i)?;
         Some((entry.key.as_ref().unwrap_or(&entry.value.span), &entry.value))
     }
 
-    fn keys(&self, entries: &[Entry]) -> Vec<String> {
-        let key = |(i, e): (usize, &Entry)| match &e.key {
+    fn keys(&self, entries: &[GroupEntry]) -> Vec<String> {
+        let key = |(i, e): (usize, &GroupEntry)| match &e.key {
             Some(key) => self.text.get(key.clone()).unwrap_or("").trim_matches('"').to_owned(),
             None => i.to_string(),
         };

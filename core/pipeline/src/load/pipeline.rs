@@ -1,7 +1,7 @@
 //! A loaded pipeline.
 
-use super::fault::{Fault, Faults, Lines};
-use super::origin::Origin;
+use super::fault::{Fault, Faults, LineStarts};
+use super::origin::TextChanges;
 use super::plugins::PluginUse;
 use super::qualities::Quality;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ pub struct Pipeline {
     /// The quality that it is loaded with, for people: `Draft`, `Draft, changed by --set`.
     pub quality: Option<String>,
     /// The file's text as it stands, and where the parts of `text` come from.
-    pub(super) written: (String, Origin),
+    pub(super) written: (String, TextChanges),
 }
 
 impl Pipeline {
@@ -50,7 +50,7 @@ impl Pipeline {
 
     /// The line of the file on which a stage stands, from 1.
     pub fn line(&self, node: &Node) -> usize {
-        Lines::of(&self.text).position(&self.text, node.place.start).0
+        LineStarts::of(&self.text).position(&self.text, node.place.start).0
     }
 
     /// Faults of the text with its overrides, shown where the user wrote what is wrong.

@@ -1,7 +1,7 @@
 //! The plugins that a pipeline names: `plugins: ["libsdf.so", (file: "libx.so", blake3: "...")]`.
 
 use super::fault::Fault;
-use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, GroupEntry, ValueShape, ValueTree};
 use crate::plugin::load_plugin;
 use std::ops::Range;
 use std::path::Path;
@@ -26,9 +26,9 @@ pub(super) const REFUSED: &str = "plugin_refused";
 const DIGITS: usize = 64;
 
 /// Reads the field's value.
-pub(super) fn read(text: &str, value: &Tree, faults: &mut Vec<Fault>) -> Vec<PluginUse> {
+pub(super) fn read(text: &str, value: &ValueTree, faults: &mut Vec<Fault>) -> Vec<PluginUse> {
     let bad = |message: &str, span: &Range<usize>| Fault::new("bad_value", message).at(span, "");
-    let Shape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
+    let ValueShape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
         if !value.is_broken {
             faults.push(bad("`plugins` wants a list of texts", &value.span));
         }
@@ -41,20 +41,20 @@ pub(super) fn read(text: &str, value: &Tree, faults: &mut Vec<Fault>) -> Vec<Plu
 
 type Wrong = (String, Range<usize>);
 
-fn one(text: &str, value: &Tree) -> Result<PluginUse, Wrong> {
+fn one(text: &str, value: &ValueTree) -> Result<PluginUse, Wrong> {
     let wrong = || {
         ("`plugins` wants text in quotes, or (file: \"...\", blake3: \"...\")".to_owned(), value.span.clone())
     };
-    let words = |tree: &Tree| -> Result<String, Wrong> {
+    let words = |tree: &ValueTree| -> Result<String, Wrong> {
         let parsed = text.get(tree.span.clone()).and_then(|t| ron_options().from_str(t).ok());
         parsed.ok_or_else(|| ("`plugins` wants text in quotes".to_owned(), tree.span.clone()))
     };
-    let Shape::Group { name: None, bracket: Bracket::Round, entries, .. } = &value.shape else {
+    let ValueShape::Group { name: None, bracket: Bracket::Round, entries, .. } = &value.shape else {
         return Ok(PluginUse { file: words(value)?, blake3: None, span: value.span.clone() });
     };
     let mut found = PluginUse { file: String::new(), blake3: None, span: value.span.clone() };
     for (i, entry) in entries.iter().enumerate() {
-        let name = |e: &Entry| e.key.as_ref().and_then(|k| text.get(k.clone()));
+        let name = |e: &GroupEntry| e.key.as_ref().and_then(|k| text.get(k.clone()));
         let key = entry.key.as_ref().filter(|_| entries[..i].iter().any(|e| name(e) == name(entry)));
         if let Some(key) = key {
             return Err((format!("the field `{}` is given twice", name(entry).unwrap_or("")), key.clone()));
@@ -68,7 +68,7 @@ fn one(text: &str, value: &Tree) -> Result<PluginUse, Wrong> {
     if found.file.is_empty() { Err(wrong()) } else { Ok(found) }
 }
 
-fn digest(text: String, at: &Tree) -> Result<String, Wrong> {
+fn digest(text: String, at: &ValueTree) -> Result<String, Wrong> {
     match text.len() == DIGITS && text.chars().all(|c| c.is_ascii_hexdigit()) {
         true => Ok(text),
         false => Err((format!("`blake3` wants {DIGITS} hexadecimal digits"), at.span.clone())),

@@ -5,7 +5,7 @@ use super::pick::{Before, pick};
 use super::words::is_table;
 use super::{MAX_FAULTS, MAX_STAGES, PluginUse, Quality, old_name, plugins, qualities};
 use crate::load::syntax::draft::{Draft, name_all};
-use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, GroupEntry, ValueShape, ValueTree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toile_core::param::ron_options;
@@ -25,7 +25,7 @@ const MAX_ID: usize = 64;
 
 /// What the file holds.
 #[derive(Debug, Default)]
-pub(super) struct Read {
+pub(super) struct FileContents {
     pub(super) name: Option<String>,
     pub(super) plugins: Vec<PluginUse>,
     pub(super) qualities: Vec<Quality>,
@@ -38,25 +38,25 @@ pub(super) struct Read {
 /// Reads a whole file; the registry may lack a plugin that is refused.
 pub(super) fn file(
     text: &str,
-    tree: &Tree,
+    tree: &ValueTree,
     (registry, lacks_plugin): (&Registry, bool),
     faults: &mut Vec<Fault>,
-) -> Read {
-    let mut r = Reader { text, registry, lacks_plugin, faults, before: Vec::new() };
-    let Shape::Group { name: None, bracket: Bracket::Round, entries, .. } = &tree.shape else {
+) -> FileContents {
+    let mut r = PipelineReader { text, registry, lacks_plugin, faults, before: Vec::new() };
+    let ValueShape::Group { name: None, bracket: Bracket::Round, entries, .. } = &tree.shape else {
         r.fault("not_a_pipeline", "a pipeline file is written `(name: ..., stages: [...])`", &tree.head());
-        return Read { stages: vec![Draft::unknown(&tree.span)], ..Read::default() };
+        return FileContents { stages: vec![Draft::unknown(&tree.span)], ..FileContents::default() };
     };
     let mut fields = r.fields(entries);
     r.known_fields(&mut fields);
-    let mut read = Read {
+    let mut read = FileContents {
         name: fields.get("name").and_then(|(_, v)| r.text_value("name", v)),
         plugins: fields.get("plugins").map(|(_, v)| plugins::read(text, v, r.faults)).unwrap_or_default(),
         qualities: fields
             .get("qualities")
             .map(|(_, v)| qualities::read(text, v, r.faults))
             .unwrap_or_default(),
-        ..Read::default()
+        ..FileContents::default()
     };
     let registered = registry.sections().iter().filter_map(|s| Some((s, fields.get(s.field)?)));
     read.sections = registered.map(|(s, (key, value))| r.section(s, key, value)).collect();
@@ -73,9 +73,9 @@ pub(super) fn file(
     read
 }
 
-type Fields<'t> = BTreeMap<String, (Range<usize>, &'t Tree)>;
+type Fields<'t> = BTreeMap<String, (Range<usize>, &'t ValueTree)>;
 
-struct Reader<'a> {
+struct PipelineReader<'a> {
     text: &'a str,
     registry: &'a Registry,
     /// True where stages may be missing since their plugin is refused.
@@ -85,7 +85,7 @@ struct Reader<'a> {
     before: Vec<Before>,
 }
 
-impl Reader<'_> {
+impl PipelineReader<'_> {
     fn fault(&mut self, code: &'static str, message: impl Into<String>, span: &Range<usize>) {
         self.push(Fault::new(code, message).at(span, ""));
     }
@@ -101,7 +101,7 @@ impl Reader<'_> {
     }
 
     /// Named entries; the first of each name counts, a second one is a fault.
-    fn fields<'t>(&mut self, entries: impl IntoIterator<Item = &'t Entry>) -> Fields<'t> {
+    fn fields<'t>(&mut self, entries: impl IntoIterator<Item = &'t GroupEntry>) -> Fields<'t> {
         let mut fields = Fields::new();
         for entry in entries {
             let Some(key) = &entry.key else {
@@ -137,7 +137,7 @@ impl Reader<'_> {
         }
     }
 
-    fn text_value(&mut self, field: &str, value: &Tree) -> Option<String> {
+    fn text_value(&mut self, field: &str, value: &ValueTree) -> Option<String> {
         if value.is_broken {
             return None;
         }
@@ -148,8 +148,8 @@ impl Reader<'_> {
         parsed
     }
 
-    fn stages(&mut self, list: &Tree) -> Vec<Draft> {
-        let Shape::Group { bracket: Bracket::Square, entries, .. } = &list.shape else {
+    fn stages(&mut self, list: &ValueTree) -> Vec<Draft> {
+        let ValueShape::Group { bracket: Bracket::Square, entries, .. } = &list.shape else {
             if list.is_broken {
                 return vec![Draft::unknown(&list.span)];
             }
@@ -172,7 +172,7 @@ impl Reader<'_> {
         stages
     }
 
-    fn section(&mut self, section: &Section, key: &Range<usize>, value: &Tree) -> Draft {
+    fn section(&mut self, section: &Section, key: &Range<usize>, value: &ValueTree) -> Draft {
         match section.holds {
             SectionValue::Stage(role) => self.stage(value, Some((section.field, role))),
             SectionValue::Table { stage, param } => self.table(key, value, stage, param),
@@ -180,7 +180,7 @@ impl Reader<'_> {
     }
 
     /// A table section: its whole value is one parameter of its stage.
-    fn table(&mut self, key: &Range<usize>, value: &Tree, stage: &str, param: &'static str) -> Draft {
+    fn table(&mut self, key: &Range<usize>, value: &ValueTree, stage: &str, param: &'static str) -> Draft {
         let card = self.registry.card(stage).cloned();
         let doc = card.as_ref().and_then(|c| c.params.iter().find(|p| p.name == param)).cloned();
         let mut draft = Draft { is_table: true, ..Draft::new(stage, &value.span, key, card) };
@@ -198,11 +198,11 @@ impl Reader<'_> {
 
     /// A stage as it is written, `Name(field: value)`; in a section it must have that section's
     /// role.
-    fn stage(&mut self, value: &Tree, section: Option<(&str, Role)>) -> Draft {
+    fn stage(&mut self, value: &ValueTree, section: Option<(&str, Role)>) -> Draft {
         let (name_span, entries) = match &value.shape {
-            Shape::Group { name: Some(name), entries, .. } => (name, Some(entries)),
-            Shape::Name => (&value.span, None),
-            Shape::Broken => return Draft::unknown(&value.span),
+            ValueShape::Group { name: Some(name), entries, .. } => (name, Some(entries)),
+            ValueShape::Name => (&value.span, None),
+            ValueShape::Broken => return Draft::unknown(&value.span),
             _ => {
                 self.fault("not_a_stage", "expected a stage, written `Name(field: value)`", &value.head());
                 let card = section.and_then(|(_, role)| self.fit(role).next().cloned());
@@ -278,16 +278,16 @@ impl Reader<'_> {
     }
 
     /// The ids in a stage's `from`, as far as they can be read; their faults come out later.
-    fn named_sources(&self, entries: &[Entry]) -> Vec<String> {
-        let is_from = |e: &&Entry| e.key.as_ref().is_some_and(|k| self.at(k) == "from");
+    fn named_sources(&self, entries: &[GroupEntry]) -> Vec<String> {
+        let is_from = |e: &&GroupEntry| e.key.as_ref().is_some_and(|k| self.at(k) == "from");
         let Some(from) = entries.iter().find(is_from) else { return Vec::new() };
         let items = from.value.entries().iter().map(|e| &e.value).chain([&from.value]);
         items.filter_map(|t| ron_options().from_str(self.at(&t.span)).ok()).collect()
     }
 
-    fn arguments(&mut self, draft: &mut Draft, entries: &[Entry]) {
+    fn arguments(&mut self, draft: &mut Draft, entries: &[GroupEntry]) {
         let known = draft.card.as_ref().filter(|c| c.name == draft.name).cloned();
-        if let [Entry { key: None, value }] = entries {
+        if let [GroupEntry { key: None, value }] = entries {
             match known.as_ref().map(|card| card.params.first()) {
                 Some(Some(doc)) => self.param(draft, doc, value),
                 Some(None) => self.no_params(draft, &value.span),
@@ -311,7 +311,7 @@ impl Reader<'_> {
         }
     }
 
-    fn param(&mut self, draft: &mut Draft, doc: &ParamDoc, value: &Tree) {
+    fn param(&mut self, draft: &mut Draft, doc: &ParamDoc, value: &ValueTree) {
         draft.params.insert(doc.name.to_owned(), value.span.clone());
         if !self.check(doc, value) {
             draft.wrong.push(doc.name);
@@ -323,7 +323,7 @@ impl Reader<'_> {
         self.push(fault.hint(format!("write `{}()`", draft.name)));
     }
 
-    fn unnamed(&mut self, card: Option<&Card>, name: &str, entry: &Entry) {
+    fn unnamed(&mut self, card: Option<&Card>, name: &str, entry: &GroupEntry) {
         let message = format!("`{name}` takes one value without a name at most, and then no others");
         let first = card.and_then(|c| c.params.first()).map_or("field", |p| p.name);
         let fault = Fault::new("unnamed_value", message).at(&entry.value.span, "");
@@ -353,7 +353,7 @@ impl Reader<'_> {
     /// Checks a value by its parameter's own type; puts the fault at the innermost value that has
     /// it. Of a list or a map, an element with a fault is left out and the others are checked as
     /// well.
-    fn check(&mut self, doc: &ParamDoc, value: &Tree) -> bool {
+    fn check(&mut self, doc: &ParamDoc, value: &ValueTree) -> bool {
         if value.is_broken {
             return false;
         }
@@ -373,13 +373,13 @@ impl Reader<'_> {
     }
 
     /// The element of a list or map that has something at a byte, with the comma behind it.
-    fn element(&self, value: &Tree, at: usize) -> Option<Range<usize>> {
-        let Shape::Group { name: None, bracket: Bracket::Square | Bracket::Curly, entries, .. } =
+    fn element(&self, value: &ValueTree, at: usize) -> Option<Range<usize>> {
+        let ValueShape::Group { name: None, bracket: Bracket::Square | Bracket::Curly, entries, .. } =
             &value.shape
         else {
             return None;
         };
-        let from = |e: &Entry| e.key.as_ref().map_or(e.value.span.start, |k| k.start);
+        let from = |e: &GroupEntry| e.key.as_ref().map_or(e.value.span.start, |k| k.start);
         let entry = entries.iter().find(|e| (from(e)..e.value.span.end).contains(&at))?;
         let rest = self.text.get(entry.value.span.end..)?;
         let comma = rest.find(|c: char| !c.is_whitespace()).filter(|i| rest[*i..].starts_with(','));
@@ -387,7 +387,7 @@ impl Reader<'_> {
     }
 
     /// The fault of a value.
-    fn wrong(&mut self, doc: &ParamDoc, value: &Tree, e: ParamFault) {
+    fn wrong(&mut self, doc: &ParamDoc, value: &ValueTree, e: ParamFault) {
         let (span, key) = e.offset.map_or((value.span.clone(), None), |o| value.locate(value.span.start + o));
         let message = match key {
             Some(key) => format!("`{}` in `{}`: {}", self.at(&key).trim_matches('"'), doc.name, e.reason),
@@ -396,7 +396,7 @@ impl Reader<'_> {
         self.push(Fault::new("bad_value", message).at(&span, "").hint(e.hint));
     }
 
-    fn id(&mut self, value: &Tree) -> Option<(String, Range<usize>)> {
+    fn id(&mut self, value: &ValueTree) -> Option<(String, Range<usize>)> {
         let id = self.text_value("id", value)?;
         let fit = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if id.is_empty() || id.len() > MAX_ID || !id.chars().all(fit) {
@@ -407,9 +407,9 @@ impl Reader<'_> {
         Some((id, value.span.clone()))
     }
 
-    fn from(&mut self, value: &Tree) -> Vec<(String, Range<usize>)> {
-        let items: Vec<&Tree> = match &value.shape {
-            Shape::Group { bracket: Bracket::Square, entries, .. } => {
+    fn from(&mut self, value: &ValueTree) -> Vec<(String, Range<usize>)> {
+        let items: Vec<&ValueTree> = match &value.shape {
+            ValueShape::Group { bracket: Bracket::Square, entries, .. } => {
                 entries.iter().map(|e| &e.value).collect()
             }
             _ => vec![value],
@@ -437,8 +437,8 @@ impl Reader<'_> {
 
 /// Reports every key that stands twice in a map; of two values the reader would take the last and
 /// say nothing.
-pub(super) fn doubled_keys(text: &str, tree: &Tree, faults: &mut Vec<Fault>) {
-    if let Shape::Group { bracket: Bracket::Curly, entries, .. } = &tree.shape {
+pub(super) fn doubled_keys(text: &str, tree: &ValueTree, faults: &mut Vec<Fault>) {
+    if let ValueShape::Group { bracket: Bracket::Curly, entries, .. } = &tree.shape {
         let mut seen: BTreeMap<String, &Range<usize>> = BTreeMap::new();
         for key in entries.iter().filter_map(|e| e.key.as_ref()) {
             let written = text.get(key.clone()).unwrap_or("");

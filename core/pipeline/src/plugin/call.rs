@@ -1,11 +1,11 @@
 //! What the program offers to a plugin during one call, and what comes of it.
 
-use super::loaded::Loaded;
+use super::loaded::LoadedLibrary;
 use std::collections::BTreeMap;
 use std::ffi::c_void;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use toile_core::artifact::stored::{Data, Owner, Record, from_record};
+use toile_core::artifact::stored::{Data, MemoryOwner, Record, from_record};
 use toile_core::artifact::{Artifact, ArtifactType, Collider};
 use toile_core::plugin::abi::{self, Text};
 use toile_core::plugin::collide;
@@ -25,13 +25,13 @@ pub(super) enum Message {
     /// A file was read, with the digest of its content where the plugin knows it.
     Read(String, Option<[u8; 32]>),
     /// A loop to be run on the program's threads.
-    Loop(Loop),
+    Loop(PluginLoop),
     /// The call is over, with this status.
     Done(i32),
 }
 
 /// A loop of a plugin.
-pub(super) struct Loop {
+pub(super) struct PluginLoop {
     pub(super) count: usize,
     pub(super) data: *mut c_void,
     pub(super) body: unsafe extern "C" fn(*mut c_void, usize),
@@ -39,11 +39,11 @@ pub(super) struct Loop {
 }
 
 // Its body may be called from any thread, by the rules of the border.
-unsafe impl Send for Loop {}
+unsafe impl Send for PluginLoop {}
 
 /// Why a plugin's call failed, in its own words.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Failure {
+pub(super) struct PluginFailure {
     pub(super) code: String,
     pub(super) message: String,
     pub(super) hint: String,
@@ -51,14 +51,14 @@ pub(super) struct Failure {
 }
 
 /// The state behind [`abi::Host::ctx`].
-pub(super) struct Call {
-    library: Arc<Loaded>,
+pub(super) struct CallState {
+    library: Arc<LoadedLibrary>,
     outputs: Vec<OutPort>,
     made: Mutex<BTreeMap<(u32, String), Arc<dyn Artifact>>>,
     /// Memory handed out, by its address.
-    blocks: Mutex<BTreeMap<usize, Block>>,
+    blocks: Mutex<BTreeMap<usize, OutputMemory>>,
     budget: Mutex<u64>,
-    failure: Mutex<Option<Failure>>,
+    failure: Mutex<Option<PluginFailure>>,
     answer: Mutex<String>,
     messages: Sender<Message>,
     cancel: Cancel,
@@ -66,7 +66,7 @@ pub(super) struct Call {
 
 /// Memory for an output, in 16-byte units.
 #[derive(Clone)]
-struct Block {
+struct OutputMemory {
     memory: Arc<Vec<u128>>,
     /// As many bytes as were asked for.
     bytes: usize,
@@ -76,15 +76,15 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Call {
+impl CallState {
     /// A call that may give to those ports.
     pub(super) fn new(
-        library: &Arc<Loaded>,
+        library: &Arc<LoadedLibrary>,
         outputs: &[OutPort],
         cancel: &Cancel,
     ) -> (Self, Receiver<Message>) {
         let (messages, receiver) = channel();
-        let call = Call {
+        let call = CallState {
             library: library.clone(),
             outputs: outputs.to_vec(),
             made: Mutex::default(),
@@ -125,7 +125,7 @@ impl Call {
         let _ = self.messages.send(Message::Done(status));
     }
 
-    pub(super) fn take_failure(&self) -> Option<Failure> {
+    pub(super) fn take_failure(&self) -> Option<PluginFailure> {
         locked(&self.failure).take()
     }
 
@@ -134,7 +134,7 @@ impl Call {
     }
 
     fn note(&self, message: String) {
-        let failure = Failure { code: "internal".into(), message, ..Failure::default() };
+        let failure = PluginFailure { code: "internal".into(), message, ..PluginFailure::default() };
         locked(&self.failure).get_or_insert(failure);
     }
 
@@ -154,7 +154,7 @@ impl Call {
         let mut block = vec![0_u128; units];
         *budget -= bytes as u64;
         let at: *mut c_void = block.as_mut_ptr().cast();
-        locked(&self.blocks).insert(at.addr(), Block { memory: Arc::new(block), bytes });
+        locked(&self.blocks).insert(at.addr(), OutputMemory { memory: Arc::new(block), bytes });
         Ok(at)
     }
 
@@ -203,7 +203,7 @@ impl Call {
             let Data::U8(bytes) = &field.data else { continue };
             let block = blocks.get(&bytes.as_ptr().addr()).filter(|b| b.bytes >= bytes.len());
             if let Some(block) = block {
-                field.owner = Owner::Foreign(Arc::new(Lending::block(block.memory.clone())));
+                field.owner = MemoryOwner::Foreign(Arc::new(Lending::block(block.memory.clone())));
             }
         }
     }
@@ -252,8 +252,8 @@ impl Call {
 }
 
 /// The call behind a context pointer.
-unsafe fn call<'a>(ctx: *mut c_void) -> &'a Call {
-    unsafe { &*ctx.cast::<Call>() }
+unsafe fn call<'a>(ctx: *mut c_void) -> &'a CallState {
+    unsafe { &*ctx.cast::<CallState>() }
 }
 
 unsafe fn words(t: Text) -> String {
@@ -278,7 +278,7 @@ unsafe extern "C" fn give_collider(ctx: *mut c_void, port: u32, collider: *const
     noted(call, unsafe { call.give_collider(port, collider) })
 }
 
-fn noted(call: &Call, outcome: Result<(), String>) -> i32 {
+fn noted(call: &CallState, outcome: Result<(), String>) -> i32 {
     match outcome {
         Ok(()) => abi::OK,
         Err(e) => {
@@ -295,7 +295,7 @@ unsafe extern "C" fn answer(ctx: *mut c_void, text: Text) {
 unsafe extern "C" fn fail(ctx: *mut c_void, code: Text, message: Text, hint: Text, about: Text) {
     let [code, message, hint, about] = [code, message, hint, about].map(|t| unsafe { words(t) });
     // What the program itself found comes first: the plugin only repeats that it failed.
-    let failure = Failure { code, message, hint, about };
+    let failure = PluginFailure { code, message, hint, about };
     locked(&unsafe { call(ctx) }.failure).get_or_insert(failure);
 }
 
@@ -333,7 +333,7 @@ unsafe extern "C" fn parallel_for(
 ) {
     let Some(body) = body else { return };
     let (done, wait) = channel();
-    let sent = unsafe { call(ctx) }.messages.send(Message::Loop(Loop { count, data, body, done }));
+    let sent = unsafe { call(ctx) }.messages.send(Message::Loop(PluginLoop { count, data, body, done }));
     if sent.is_err() || wait.recv().is_err() {
         // Nobody waits for this call any more: it may run to its end, but not on the program's
         // threads. A loop that was sent and then dropped has not been begun.

@@ -8,24 +8,24 @@
 use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 
 /// Why a file cannot be a plugin here, and what the user may do.
-type Why = (String, String);
+type MisfitReason = (String, String);
 
 /// The longest first line of a text that is shown, characters.
 const MOST_SHOWN: usize = 40;
 
 /// Looks at a file; none where it may be a library for this machine.
-pub(super) fn foreign(bytes: &[u8]) -> Option<Why> {
+pub(super) fn foreign(bytes: &[u8]) -> Option<MisfitReason> {
     match bytes {
         [] => Some((
             "it is empty".into(),
             "an interrupted build or copy leaves such a file: build it again".into(),
         )),
-        [0x7F, b'E', b'L', b'F', ..] => found(elf(bytes)?, System::Linux),
-        [b'M', b'Z', ..] => found(pe(bytes)?, System::Windows),
-        [0xCF | 0xCE, 0xFA, 0xED, 0xFE, ..] => found(mach(bytes)?, System::MacOs),
+        [0x7F, b'E', b'L', b'F', ..] => found(elf(bytes)?, OperatingSystem::Linux),
+        [b'M', b'Z', ..] => found(pe(bytes)?, OperatingSystem::Windows),
+        [0xCF | 0xCE, 0xFA, 0xED, 0xFE, ..] => found(mach(bytes)?, OperatingSystem::MacOs),
         // Java classes begin alike; their count reads as one beyond any.
         [0xCA, 0xFE, 0xBA, 0xBE | 0xBF, 0, 0, 0, 1..=16, ..] => {
-            found(Code { form: Form::Library, processors: fat(bytes) }, System::MacOs)
+            found(Code { form: FileForm::Library, processors: fat(bytes) }, OperatingSystem::MacOs)
         }
         _ => Some(other(bytes)),
     }
@@ -33,52 +33,52 @@ pub(super) fn foreign(bytes: &[u8]) -> Option<Why> {
 
 /// What code a file holds.
 struct Code {
-    form: Form,
+    form: FileForm,
     processors: Vec<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Form {
+enum FileForm {
     Library,
     Program,
     Object,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum System {
+enum OperatingSystem {
     Linux,
     MacOs,
     Windows,
 }
 
-impl System {
+impl OperatingSystem {
     /// That whose libraries this machine loads; systems that are none of these load those of
     /// Linux's form.
     fn here() -> Self {
         match OS {
-            "windows" => System::Windows,
-            "macos" | "ios" => System::MacOs,
-            _ => System::Linux,
+            "windows" => OperatingSystem::Windows,
+            "macos" | "ios" => OperatingSystem::MacOs,
+            _ => OperatingSystem::Linux,
         }
     }
 
     fn name(self) -> &'static str {
         match self {
-            System::Linux => "Linux",
-            System::MacOs => "macOS",
-            System::Windows => "Windows",
+            OperatingSystem::Linux => "Linux",
+            OperatingSystem::MacOs => "macOS",
+            OperatingSystem::Windows => "Windows",
         }
     }
 }
 
 /// Code of that system: what is wrong with it here.
-fn found(code: Code, system: System) -> Option<Why> {
-    let here = System::here();
+fn found(code: Code, system: OperatingSystem) -> Option<MisfitReason> {
+    let here = OperatingSystem::here();
     let processors = code.processors.join(" and ");
     let what = match code.form {
-        Form::Library => "a library",
-        Form::Program => "a program",
-        Form::Object => "an object file",
+        FileForm::Library => "a library",
+        FileForm::Program => "a program",
+        FileForm::Object => "an object file",
     };
     if system != here {
         let reason = format!(
@@ -96,9 +96,9 @@ fn found(code: Code, system: System) -> Option<Why> {
         return Some((reason, format!("take its build for {ARCH}, or build it on this machine")));
     }
     match code.form {
-        Form::Library => None,
-        Form::Program => Some(("it is a program, not a library".into(), as_library())),
-        Form::Object => Some(("it is an object file, which is not linked yet".into(), as_library())),
+        FileForm::Library => None,
+        FileForm::Program => Some(("it is a program, not a library".into(), as_library())),
+        FileForm::Object => Some(("it is an object file, which is not linked yet".into(), as_library())),
     }
 }
 
@@ -120,9 +120,9 @@ fn elf(bytes: &[u8]) -> Option<Code> {
     let half =
         |at: usize| number::<2>(bytes, at).map(|n| if big { u64::from((n as u16).swap_bytes()) } else { n });
     let form = match half(16)? {
-        1 => Form::Object,
-        2 => Form::Program,
-        3 => Form::Library,
+        1 => FileForm::Object,
+        2 => FileForm::Program,
+        3 => FileForm::Library,
         _ => return None,
     };
     let processor = match (half(18)?, wide, big) {
@@ -157,15 +157,15 @@ fn pe(bytes: &[u8]) -> Option<Code> {
         0xAA64 => "aarch64".into(),
         n => format!("processor {n}"),
     };
-    let form = if number::<2>(head, 22)? & LIBRARY != 0 { Form::Library } else { Form::Program };
+    let form = if number::<2>(head, 22)? & LIBRARY != 0 { FileForm::Library } else { FileForm::Program };
     Some(Code { form, processors: vec![processor] })
 }
 
 fn mach(bytes: &[u8]) -> Option<Code> {
     let form = match number::<4>(bytes, 12)? {
-        1 => Form::Object,
-        2 => Form::Program,
-        _ => Form::Library,
+        1 => FileForm::Object,
+        2 => FileForm::Program,
+        _ => FileForm::Library,
     };
     Some(Code { form, processors: vec![apple(number::<4>(bytes, 4)?)] })
 }
@@ -189,7 +189,7 @@ fn apple(processor: u64) -> String {
 }
 
 /// A file that is no code of any system.
-fn other(bytes: &[u8]) -> Why {
+fn other(bytes: &[u8]) -> MisfitReason {
     let archive = |form: &str| {
         (format!("it is an archive ({form})"), "unpack it, and name the library in it".to_owned())
     };
@@ -216,7 +216,7 @@ fn other(bytes: &[u8]) -> Why {
 }
 
 /// A text in place of a library.
-fn text(bytes: &[u8]) -> Option<Why> {
+fn text(bytes: &[u8]) -> Option<MisfitReason> {
     let text = std::str::from_utf8(bytes).ok()?;
     if text.contains(|c: char| c.is_control() && !c.is_whitespace()) {
         return None;

@@ -4,9 +4,9 @@
 //! loops and words it serves: a run that does not stop when it is asked to is left behind, and the
 //! program goes on.
 
-use super::call::{Call, Failure, Loop, Message};
+use super::call::{CallState, Message, PluginFailure, PluginLoop};
 use super::card;
-use super::loaded::Loaded;
+use super::loaded::LoadedLibrary;
 use rayon::prelude::*;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::any::Any;
@@ -61,21 +61,21 @@ impl Drop for Waiting {
 /// A stage type of a plugin.
 #[derive(Debug, Clone)]
 pub(super) struct ForeignType {
-    pub(super) library: Arc<Loaded>,
+    pub(super) library: Arc<LoadedLibrary>,
     pub(super) table: abi::StageTable,
 }
 
 /// A stage that a plugin has made, destroyed with its last user.
-struct Object {
+struct ForeignObject {
     of: ForeignType,
     stage: *mut c_void,
 }
 
 // Its functions may be called from any thread, by the rules of the border.
-unsafe impl Send for Object {}
-unsafe impl Sync for Object {}
+unsafe impl Send for ForeignObject {}
+unsafe impl Sync for ForeignObject {}
 
-impl Drop for Object {
+impl Drop for ForeignObject {
     fn drop(&mut self) {
         if let Some(destroy) = self.of.table.destroy {
             let _inside = inside(self.of.library.words());
@@ -85,13 +85,13 @@ impl Drop for Object {
 }
 
 /// A plugin's stage with its parameters set.
-struct Foreign {
+struct ForeignStage {
     card: Card,
     params: String,
-    object: Arc<Object>,
+    object: Arc<ForeignObject>,
 }
 
-impl std::fmt::Debug for Foreign {
+impl std::fmt::Debug for ForeignStage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}{}", self.card.name, self.params)
     }
@@ -101,14 +101,14 @@ impl Make for ForeignType {
     /// Errors: the plugin's own sentence.
     fn make(&self, card: &Card, arguments: &str) -> Result<Box<dyn Stage>, String> {
         let create = self.table.create.ok_or("the plugin cannot make it")?;
-        let (call, _) = Call::new(&self.library, &[], &Cancel::new());
+        let (call, _) = CallState::new(&self.library, &[], &Cancel::new());
         let mut stage = std::ptr::null_mut();
         let _inside = long(self.library.words(), &format!("while it makes its stage `{}`", card.name));
         let status = unsafe { create(Text::of(arguments), &call.host(), &mut stage) };
         self.done(status, &call).map_err(|e| e.message)?;
-        let object = Arc::new(Object { of: self.clone(), stage });
+        let object = Arc::new(ForeignObject { of: self.clone(), stage });
         let params = object.describe().map_err(|e| e.message)?;
-        Ok(Box::new(Foreign { card: card.clone(), params, object }))
+        Ok(Box::new(ForeignStage { card: card.clone(), params, object }))
     }
 }
 
@@ -116,7 +116,7 @@ impl ForeignType {
     /// Checks a text as the value of a parameter.
     pub(super) fn check(&self, param: usize, value: &str, doc: &ParamDoc) -> Result<(), ParamFault> {
         let Some(check) = self.table.check else { return Ok(()) };
-        let (call, _) = Call::new(&self.library, &[], &Cancel::new());
+        let (call, _) = CallState::new(&self.library, &[], &Cancel::new());
         let mut offset = -1;
         let _inside = long(self.library.words(), &format!("while it checks `{}`", doc.name));
         let status = unsafe { check(param, Text::of(value), &call.host(), &mut offset) };
@@ -135,7 +135,7 @@ impl ForeignType {
     }
 
     /// The outcome of a call.
-    fn done(&self, status: i32, call: &Call) -> Result<(), StageError> {
+    fn done(&self, status: i32, call: &CallState) -> Result<(), StageError> {
         let of = self.library.words();
         let bug = "this is a bug of the plugin, please report it to its author";
         let told = call.take_failure();
@@ -155,7 +155,7 @@ impl ForeignType {
         }
     }
 
-    fn error(&self, told: Failure) -> StageError {
+    fn error(&self, told: PluginFailure) -> StageError {
         let code = ErrorCode::named(&told.code).unwrap_or(ErrorCode::InvalidInput);
         let message = match code {
             ErrorCode::Internal => format!("{}: {}", self.library.words(), told.message),
@@ -172,10 +172,10 @@ impl ForeignType {
     }
 }
 
-impl Object {
+impl ForeignObject {
     fn describe(&self) -> Result<String, StageError> {
         let Some(describe) = self.of.table.describe else { return Ok("()".into()) };
-        let (call, _) = Call::new(&self.of.library, &[], &Cancel::new());
+        let (call, _) = CallState::new(&self.of.library, &[], &Cancel::new());
         let _inside = inside(self.of.library.words());
         let status = unsafe { describe(self.stage, &call.host()) };
         self.of.done(status, &call)?;
@@ -183,7 +183,7 @@ impl Object {
     }
 
     /// Calls the plugin; gives back its status.
-    fn run(&self, call: &Call, inputs: &Inputs, names: &Names) -> i32 {
+    fn run(&self, call: &CallState, inputs: &Inputs, names: &RunNames) -> i32 {
         let Some(run) = self.of.table.run else { return abi::FAILED };
         let fed: Vec<u32> = inputs.0.iter().map(|v| how_fed(v.as_ref())).collect();
         let lent = lend(inputs);
@@ -255,22 +255,22 @@ fn lend(inputs: &Inputs) -> Vec<LentInput<'_>> {
 }
 
 /// What a run is called.
-struct Names {
+struct RunNames {
     stage: String,
     entry: String,
     base: String,
     threads: u32,
 }
 
-impl Names {
-    fn host(&self, call: &Call) -> abi::Host {
+impl RunNames {
+    fn host(&self, call: &CallState) -> abi::Host {
         // The plugin's thread is no thread of the pool, and would count wrongly.
         abi::Host { threads: self.threads, ..call.host() }
     }
 }
 
 #[typetag::serde(name = "a plugin's stage")]
-impl Stage for Foreign {
+impl Stage for ForeignStage {
     fn card(&self) -> Card {
         self.card.clone()
     }
@@ -281,9 +281,9 @@ impl Stage for Foreign {
 
     fn run_ports(&self, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, StageError> {
         let of = &self.object.of;
-        let (call, messages) = Call::new(&of.library, &self.card.outputs, cx.cancel());
+        let (call, messages) = CallState::new(&of.library, &self.card.outputs, cx.cancel());
         let call = Arc::new(call);
-        let names = Names {
+        let names = RunNames {
             stage: cx.stage().to_owned(),
             entry: cx.entry().to_owned(),
             base: cx.base().to_string_lossy().into_owned(),
@@ -309,7 +309,7 @@ impl Stage for Foreign {
     }
 }
 
-impl Foreign {
+impl ForeignStage {
     /// Serves the plugin's thread until it is done.
     fn serve(&self, messages: &Receiver<Message>, cx: &Context) -> Result<i32, StageError> {
         let _waiting = Waiting::new();
@@ -343,8 +343,8 @@ impl Foreign {
     }
 }
 
-fn serve_loop(work: &Loop, plugin: &'static str) {
-    let (body, data) = (work.body, Data(work.data));
+fn serve_loop(work: &PluginLoop, plugin: &'static str) {
+    let (body, data) = (work.body, SharedPointer(work.data));
     (0..work.count).into_par_iter().for_each(|i| {
         let _inside = inside(plugin);
         unsafe { body(data.get(), i) }
@@ -354,24 +354,24 @@ fn serve_loop(work: &Loop, plugin: &'static str) {
 
 /// A pointer that a plugin shares among threads.
 #[derive(Clone, Copy)]
-struct Data(*mut c_void);
+struct SharedPointer(*mut c_void);
 
-impl Data {
+impl SharedPointer {
     fn get(self) -> *mut c_void {
         self.0
     }
 }
 
-unsafe impl Send for Data {}
-unsafe impl Sync for Data {}
+unsafe impl Send for SharedPointer {}
+unsafe impl Sync for SharedPointer {}
 
-impl Serialize for Foreign {
+impl Serialize for ForeignStage {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
         s.serialize_str(&format!("{self:?}"))
     }
 }
 
-impl<'de> Deserialize<'de> for Foreign {
+impl<'de> Deserialize<'de> for ForeignStage {
     fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
         Err(serde::de::Error::custom("a plugin's stage is made by its plugin"))
     }

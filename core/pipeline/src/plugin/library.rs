@@ -3,7 +3,7 @@
 use super::card::{Strides, read};
 use super::first_bytes;
 use super::foreign::ForeignType;
-use super::loaded::Loaded;
+use super::loaded::LoadedLibrary;
 use super::refused_by_system::worded;
 use super::whole::check_whole;
 use libloading::Library;
@@ -226,7 +226,7 @@ unsafe fn open((from, file): (&Path, &Path), symbols: &[Vec<u8>], digest: Digest
     }
     let id = PluginId { name: intern(name), version: intern(version), digest };
     let words = intern(&format!("plugin \"{}\" {}", id.name, id.version));
-    let loaded = Arc::new(Loaded::new(id, words, library));
+    let loaded = Arc::new(LoadedLibrary::new(id, words, library));
     let (cards, makers) = unsafe { stages(&declaration, &loaded)? };
     Ok(Plugin { id, file: file.to_owned(), abi: (declaration.major, declaration.minor), cards, makers })
 }
@@ -283,7 +283,7 @@ type Makers = Vec<Arc<dyn Make>>;
 
 /// # Safety
 /// The declaration has passed the handshake.
-unsafe fn stages(d: &abi::Declaration, library: &Arc<Loaded>) -> Result<(Vec<Card>, Makers), Why> {
+unsafe fn stages(d: &abi::Declaration, library: &Arc<LoadedLibrary>) -> Result<(Vec<Card>, Makers), Why> {
     let list = d.stages.ok_or_else(|| plain("it lacks the function `stages`"))?;
     let mut count = 0;
     let first = unsafe { list(&mut count) };

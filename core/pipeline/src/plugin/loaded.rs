@@ -9,16 +9,16 @@ use toile_core::PluginId;
 /// It stays so until the program ends: threads of its own may outlive its last object, and code
 /// that is taken from under a thread ends the program.
 #[derive(Debug)]
-pub(super) struct Loaded {
+pub(super) struct LoadedLibrary {
     id: PluginId,
     words: &'static str,
     _library: ManuallyDrop<Library>,
 }
 
-impl Loaded {
+impl LoadedLibrary {
     /// Keeps a library; `words` name the plugin.
     pub(super) fn new(id: PluginId, words: &'static str, library: Library) -> Self {
-        Loaded { id, words, _library: ManuallyDrop::new(library) }
+        LoadedLibrary { id, words, _library: ManuallyDrop::new(library) }
     }
 
     /// Which plugin it is.

@@ -51,7 +51,7 @@ fn cut_short(needs: u64, bytes: &[u8]) -> String {
 }
 
 /// Where the fields of an ELF file lie, by the width of its addresses.
-struct Layout {
+struct ElfLayout {
     /// Bytes of an address.
     word: u64,
     /// Of the file header: offsets of the program and the section headers, and of the sizes and
@@ -65,10 +65,16 @@ struct Layout {
     section: [u64; 2],
 }
 
-const ELF32: Layout =
-    Layout { word: 4, programs: 28, sections: 32, counts: 42, segment: [4, 8, 16, 20], section: [16, 20] };
-const ELF64: Layout =
-    Layout { word: 8, programs: 32, sections: 40, counts: 54, segment: [8, 16, 32, 40], section: [24, 32] };
+const ELF32: ElfLayout =
+    ElfLayout { word: 4, programs: 28, sections: 32, counts: 42, segment: [4, 8, 16, 20], section: [16, 20] };
+const ELF64: ElfLayout = ElfLayout {
+    word: 8,
+    programs: 32,
+    sections: 40,
+    counts: 54,
+    segment: [8, 16, 32, 40],
+    section: [24, 32],
+};
 
 const LOADED: u64 = 1;
 const DYNAMIC: u64 = 2;

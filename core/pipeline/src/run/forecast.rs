@@ -1,10 +1,10 @@
 //! What a run would find in the cache and what it would run, and why, without running anything.
 
-use super::known::{Search, held};
-use super::steps::{Ran, Run, Step};
-use super::value::{Held, Slot, gather};
+use super::known::{CacheSearch, held};
+use super::steps::{PipelineRun, RanStage, StageOutcome};
+use super::value::{ArtifactSlot, HeldValue, gather};
 use super::{RunError, RunOptions, plan};
-use crate::cache::{Cache, Cause, Found, Last, Miss};
+use crate::cache::{Cache, CacheAnswer, Cause, LastMade, Miss};
 use crate::load::Pipeline;
 use std::sync::Arc;
 use toile_core::RunLog;
@@ -40,7 +40,7 @@ pub fn forecast(
 ) -> Result<Vec<Outlook>, RunError> {
     let (cancel, listener): (Cancel, Arc<dyn Listener>) = (Cancel::new(), Arc::new(()));
     let plan = plan(pipeline, options)?;
-    let mut run = Run {
+    let mut run = PipelineRun {
         pipeline,
         cache: Some(cache),
         cancel: &cancel,
@@ -56,12 +56,19 @@ pub fn forecast(
     for (node, skipped) in pipeline.nodes.iter().zip(plan) {
         let mut outlook = Outlook { stage: node.id.clone(), skipped, entries: Vec::new() };
         let step = match &outlook.skipped {
-            Some(reason) => Step::Skipped(reason.clone()),
+            Some(reason) => StageOutcome::Skipped(reason.clone()),
             None => {
                 let (entries, outputs) = look(&run, node, cache)?;
                 outlook.entries = entries;
                 let (figures, remarks) = (Vec::new(), Remarks::default());
-                Step::Ran(Ran { outputs, wall_s: 0.0, cached: true, figures, remarks, cost: None })
+                StageOutcome::Ran(RanStage {
+                    outputs,
+                    wall_s: 0.0,
+                    cached: true,
+                    figures,
+                    remarks,
+                    cost: None,
+                })
             }
         };
         run.steps.push(step);
@@ -72,7 +79,7 @@ pub fn forecast(
 
 type Entries = Vec<(String, Option<Vec<Cause>>)>;
 
-fn look(run: &Run<'_>, node: &Node, cache: &Cache) -> Result<(Entries, Vec<Held>), RunError> {
+fn look(run: &PipelineRun<'_>, node: &Node, cache: &Cache) -> Result<(Entries, Vec<HeldValue>), RunError> {
     let index = run.steps.len();
     let searches = run.search(index).map_err(|(entry, error)| RunError {
         stage: node.id.clone(),
@@ -82,15 +89,15 @@ fn look(run: &Run<'_>, node: &Node, cache: &Cache) -> Result<(Entries, Vec<Held>
     })?;
     if searches.is_empty() {
         // Which entries there are is not known before the stages ahead have run for the first time.
-        let unknown = node.card.outputs.iter().map(|_| Held::Unknown).collect();
+        let unknown = node.card.outputs.iter().map(|_| HeldValue::Unknown).collect();
         return Ok((vec![(String::new(), Some(vec![Cause::NeverRun]))], unknown));
     }
     let (mut entries, mut outputs) = (Vec::new(), Vec::new());
     for search in searches {
         let last = cache.last(run.pipeline, &node.id, &search.entry);
         let (causes, made) = match &search.found {
-            Found::Hit(manifest) => (None, held(node, None, Some(manifest))),
-            Found::Miss(miss) => {
+            CacheAnswer::Hit(manifest) => (None, held(node, None, Some(manifest))),
+            CacheAnswer::Miss(miss) => {
                 (Some(causes(run, node, &search, miss, last.as_ref())), unmade(node, last.as_ref()))
             }
         };
@@ -104,7 +111,13 @@ fn look(run: &Run<'_>, node: &Node, cache: &Cache) -> Result<(Entries, Vec<Held>
     Ok((entries, outputs))
 }
 
-fn causes(run: &Run<'_>, node: &Node, search: &Search, miss: &Miss, last: Option<&Last>) -> Vec<Cause> {
+fn causes(
+    run: &PipelineRun<'_>,
+    node: &Node,
+    search: &CacheSearch,
+    miss: &Miss,
+    last: Option<&LastMade>,
+) -> Vec<Cause> {
     if !node.card.contracts.contains(&Contract::Deterministic) {
         return vec![Cause::NotDeterministic];
     }
@@ -130,15 +143,16 @@ fn causes(run: &Run<'_>, node: &Node, search: &Search, miss: &Miss, last: Option
 }
 
 /// Outputs that have yet to be made; sets have the names that they had last.
-fn unmade(node: &Node, last: Option<&Last>) -> Vec<Held> {
+fn unmade(node: &Node, last: Option<&LastMade>) -> Vec<HeldValue> {
     let port = |(i, out): (usize, &toile_core::OutPort)| {
         let names = last.and_then(|l| l.sets.get(i)?.as_ref());
         match (out.kind == RunLog::KIND, names) {
-            (false, Some(names)) => {
-                Held::Set(out.kind, names.iter().map(|n| (n.clone(), Slot::unknown(out.kind))).collect())
-            }
-            _ if node.card.is_mapped() => Held::One(Slot::unknown(out.kind)),
-            _ => Held::Unknown,
+            (false, Some(names)) => HeldValue::Set(
+                out.kind,
+                names.iter().map(|n| (n.clone(), ArtifactSlot::unknown(out.kind))).collect(),
+            ),
+            _ if node.card.is_mapped() => HeldValue::One(ArtifactSlot::unknown(out.kind)),
+            _ => HeldValue::Unknown,
         }
     };
     node.card.outputs.iter().enumerate().map(port).collect()

@@ -115,10 +115,10 @@ mod tests {
 
     /// Lays flat.
     #[stage(role = Flattener)]
-    struct Flat {}
+    struct LaidFlat {}
 
     #[stage]
-    impl Flat {
+    impl LaidFlat {
         fn run(&self, _model: &Model, _cx: &Context) -> Result<Model, StageError> {
             Err(StageError::internal("a test stage does nothing"))
         }
@@ -127,7 +127,7 @@ mod tests {
     /// The vest with these stages at its end: what feeds the judgement, and what stands around it.
     fn judged(end: &str) -> (String, Vec<String>) {
         let mut registry = kit::registry();
-        registry.add::<Flat>();
+        registry.add::<LaidFlat>();
         registry.add_implicit::<Judge>();
         let text = kit::VEST.replace("Glb(), Report(),", end);
         let mut pipeline = load(&text, "vest.ron", Path::new("."), &registry, &[]).unwrap();
@@ -145,21 +145,21 @@ mod tests {
     #[test]
     fn what_was_sewn_is_judged_whatever_flatteners_stand_behind() {
         for end in [
-            "Flat(), Flat(id: \"again\"), Glb(), Report(),",
-            "Flat(), Flat(id: \"again\"), Judge(), Glb(), Report(),",
+            "LaidFlat(), LaidFlat(id: \"again\"), Glb(), Report(),",
+            "LaidFlat(), LaidFlat(id: \"again\"), Judge(), Glb(), Report(),",
         ] {
             let (fed, _) = judged(end);
             assert_eq!(fed, "Painter", "{end}");
         }
         let mut registry = kit::registry();
-        registry.add::<Flat>();
+        registry.add::<LaidFlat>();
         registry.add_implicit::<Judge>();
-        let text = kit::VEST.replace("Glb(), Report(),", "Flat(), Glb(), Report(),");
+        let text = kit::VEST.replace("Glb(), Report(),", "LaidFlat(), Glb(), Report(),");
         let mut pipeline = load(&text, "vest.ron", Path::new("."), &registry, &[]).unwrap();
         add_implicit(&mut pipeline, &registry);
         let judge = &pipeline.nodes[pipeline.find("Judge").unwrap()];
         let Feed::Node { node, .. } = judge.inputs[1] else { panic!("{:?}", judge.inputs) };
-        assert_eq!(pipeline.nodes[node].id, "Flat");
+        assert_eq!(pipeline.nodes[node].id, "LaidFlat");
     }
 
     #[test]

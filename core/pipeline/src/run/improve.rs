@@ -9,14 +9,14 @@
 //! from the first of them.
 
 use super::node::WORK;
-use super::steps::{Ran, Run, Step};
-use super::value::Held;
+use super::steps::{PipelineRun, RanStage, StageOutcome};
+use super::value::HeldValue;
 use super::{RunError, typed};
 use std::ops::Range;
 use toile_core::artifact::{ArtifactType, Garment, Kind};
 use toile_core::{ErrorCode, Event, Feed, Node, PortValue, Remarks};
 
-impl Run<'_> {
+impl PipelineRun<'_> {
     /// Undoes what failed at stage `index`, where it improves on a result that is at rest; the
     /// runner then goes on behind the steps that are left.
     ///
@@ -67,7 +67,7 @@ impl Run<'_> {
     pub(super) fn improvements(&mut self) -> Result<Option<(usize, usize)>, RunError> {
         let last = (0..self.steps.len()).rev().find(|&i| {
             let node = &self.pipeline.nodes[i];
-            let ran = matches!(self.steps[i], Step::Ran(_));
+            let ran = matches!(self.steps[i], StageOutcome::Ran(_));
             ran && node.stage.improves() && gives_garment(node) && !self.undone.contains_key(&i)
         });
         let Some(last) = last else { return Ok(None) };
@@ -91,7 +91,7 @@ impl Run<'_> {
     /// Tells what the steps from `first` on remarked, which ran unheard.
     pub(super) fn tell_again(&self, first: usize) {
         for (step, node) in self.steps.iter().zip(&self.pipeline.nodes).skip(first) {
-            let Some(Ran { remarks: Remarks { notes, warnings }, .. }) = step.ran() else { continue };
+            let Some(RanStage { remarks: Remarks { notes, warnings }, .. }) = step.ran() else { continue };
             notes.iter().for_each(|text| self.listener.event(&node.id, "", &Event::Note(text.clone())));
             warnings.iter().for_each(|text| self.listener.event(&node.id, "", &Event::Warning(text.clone())));
         }
@@ -100,22 +100,22 @@ impl Run<'_> {
     /// The result of an undone stage: what it was given of the kinds that it makes.
     ///
     /// Errors: those of bringing that into memory.
-    pub(super) fn passed_on(&mut self, index: usize) -> Result<Ran, RunError> {
+    pub(super) fn passed_on(&mut self, index: usize) -> Result<RanStage, RunError> {
         let node = &self.pipeline.nodes[index];
         let mut outputs = Vec::new();
         for out in &node.card.outputs {
             let Some(Feed::Node { node: maker, port }) = feed_of(node, out.kind).cloned() else {
-                outputs.push(Held::Unknown);
+                outputs.push(HeldValue::Unknown);
                 continue;
             };
             self.ensure(maker, port, None)?;
-            outputs.push(self.held(maker, port).cloned().unwrap_or(Held::Unknown));
+            outputs.push(self.held(maker, port).cloned().unwrap_or(HeldValue::Unknown));
         }
         let mut remarks = Remarks::default();
         if let Some(Some(why)) = self.undone.get(&index) {
             remarks.warnings.push(why.clone());
         }
-        Ok(Ran { outputs, wall_s: 0.0, cached: false, figures: Vec::new(), remarks, cost: None })
+        Ok(RanStage { outputs, wall_s: 0.0, cached: false, figures: Vec::new(), remarks, cost: None })
     }
 
     /// How much work the stage may take: as much as the result took that it improves on; any amount
@@ -143,7 +143,7 @@ impl Run<'_> {
     }
 
     fn is_skipped(&self, index: usize) -> bool {
-        matches!(self.steps.get(index), Some(Step::Skipped(_)))
+        matches!(self.steps.get(index), Some(StageOutcome::Skipped(_)))
     }
 
     /// Whether the garment that a stage made is at rest; none where it made none.

@@ -29,7 +29,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
-use steps::{Run, Step};
+use steps::{PipelineRun, StageOutcome};
 use toile_core::RunLog;
 use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles};
 use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, Remarks, StageError, panics};
@@ -114,7 +114,7 @@ pub fn run(
     let started = Instant::now();
     let cache = options.cache.as_ref();
     let reads = options.reads.as_ref();
-    let mut run = Run {
+    let mut run = PipelineRun {
         pipeline,
         cache,
         cancel,
@@ -139,7 +139,7 @@ pub fn run(
 
 /// Runs all stages of the plan; a garment that misses limits with the stages that only improve on
 /// it, and misses none without them, is given without them. Gives the judgement.
-fn unharmed(run: &mut Run<'_>, plan: &[Option<String>]) -> Result<Vec<Figures>, RunError> {
+fn unharmed(run: &mut PipelineRun<'_>, plan: &[Option<String>]) -> Result<Vec<Figures>, RunError> {
     stages(run, plan)?;
     let judged = judged(run)?;
     let Some(missed) = judged.iter().find_map(|f| f.shortfalls.first()) else { return Ok(judged) };
@@ -167,12 +167,12 @@ fn unharmed(run: &mut Run<'_>, plan: &[Option<String>]) -> Result<Vec<Figures>, 
 }
 
 /// The judgements of the garment.
-fn judged(run: &mut Run<'_>) -> Result<Vec<Figures>, RunError> {
+fn judged(run: &mut PipelineRun<'_>) -> Result<Vec<Figures>, RunError> {
     Ok(run.all()?.into_iter().map(|(_, f)| f).collect())
 }
 
 /// Runs all stages of the plan that have not run yet.
-fn stages(run: &mut Run<'_>, plan: &[Option<String>]) -> Result<(), RunError> {
+fn stages(run: &mut PipelineRun<'_>, plan: &[Option<String>]) -> Result<(), RunError> {
     while let Some(skipped) = plan.get(run.steps.len()) {
         let index = run.steps.len();
         let node = &run.pipeline.nodes[index];
@@ -181,7 +181,7 @@ fn stages(run: &mut Run<'_>, plan: &[Option<String>]) -> Result<(), RunError> {
                 Ok(()) => run.undo_unrest(index)?,
                 Err(failure) => run.undo(index, failure)?,
             },
-            Some(reason) => run.steps.push(Step::Skipped(reason.clone())),
+            Some(reason) => run.steps.push(StageOutcome::Skipped(reason.clone())),
         }
     }
     Ok(())
@@ -196,7 +196,7 @@ fn unbroken<T>(node: &Node, work: impl FnOnce() -> Result<T, RunError>) -> Resul
 }
 
 /// The writers' files and those of stages whose artifacts were asked for.
-fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, RunError> {
+fn files(run: &mut PipelineRun<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, RunError> {
     let mut files: Vec<OutputFile> = written(run)?.into_iter().flat_map(|(_, f)| f.0).collect();
     let nodes = run.pipeline.nodes.iter().enumerate();
     let kept = |id: &str| options.keep || options.until.as_deref() == Some(id);
@@ -215,7 +215,7 @@ fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, Run
 /// The writers' files, each with the index of its writer.
 ///
 /// Errors: two stages write a file of the same name; the second is named.
-fn written(run: &mut Run<'_>) -> Result<Vec<(usize, OutputFiles)>, RunError> {
+fn written(run: &mut PipelineRun<'_>) -> Result<Vec<(usize, OutputFiles)>, RunError> {
     let all = run.all::<OutputFiles>()?;
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     for (node, files) in &all {
@@ -304,11 +304,11 @@ pub(crate) fn typed<T: ArtifactType>(artifact: &Arc<dyn Artifact>) -> Option<&T>
     any.downcast_ref()
 }
 
-fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
+fn metrics(run: &PipelineRun<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
     let steps = || run.pipeline.nodes.iter().zip(&run.steps);
     let ran = steps().enumerate().filter_map(|(i, (node, step))| match step {
-        Step::Skipped(_) => None,
-        Step::Ran(ran) => Some(StageMetrics {
+        StageOutcome::Skipped(_) => None,
+        StageOutcome::Ran(ran) => Some(StageMetrics {
             id: node.id.clone(),
             name: node.card.name.to_owned(),
             wall_s: ran.wall_s,
@@ -321,8 +321,8 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
         }),
     });
     let skipped = steps().filter_map(|(node, step)| match step {
-        Step::Ran(_) => None,
-        Step::Skipped(reason) => Some(StageMetrics {
+        StageOutcome::Ran(_) => None,
+        StageOutcome::Skipped(reason) => Some(StageMetrics {
             id: node.id.clone(),
             name: node.id.clone(),
             wall_s: 0.0,

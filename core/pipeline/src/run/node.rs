@@ -3,14 +3,14 @@
 use super::pixels::of_the_file;
 use crate::file_hash::file_hash;
 use crate::load::texts_of;
-use crate::made::Made;
+use crate::made::EntryResult;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use toile_core::artifact::Digest;
 use toile_core::{Context, Inputs, Node, PortValue, StageError, panics};
 
 /// A failure with the entry at work.
-pub(super) type Failure = (String, StageError);
+pub(super) type EntryFailure = (String, StageError);
 
 /// The figure that says how much work a stage took: steps over all of its vertices.
 pub(super) const WORK: &str = "work";
@@ -25,8 +25,8 @@ pub(super) fn run_entries(
     node: &Node,
     jobs: Vec<(String, Inputs)>,
     cx: &Context,
-) -> Result<Vec<Made>, Failure> {
-    let runs: Vec<Result<Made, Failure>> =
+) -> Result<Vec<EntryResult>, EntryFailure> {
+    let runs: Vec<Result<EntryResult, EntryFailure>> =
         jobs.into_par_iter().map(|(entry, inputs)| run_entry(node, entry, &inputs, cx)).collect();
     let front = runs.iter().position(|r| matches!(r, Err((entry, _)) if entry == FRONT));
     match front {
@@ -35,7 +35,7 @@ pub(super) fn run_entries(
     }
 }
 
-fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Result<Made, Failure> {
+fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Result<EntryResult, EntryFailure> {
     let own = cx.for_entry(&entry);
     let outcome = guarded(node, inputs, &own);
     let mut reads = own.take_reads();
@@ -51,7 +51,7 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
                 own.figure(WORK, own.work_so_far(), "steps");
             }
             let (figures, remarks) = (own.take_figures(), own.take_remarks());
-            Ok(Made { entry, outputs, figures, remarks, reads })
+            Ok(EntryResult { entry, outputs, figures, remarks, reads })
         }
     }
 }

@@ -1,12 +1,12 @@
 //! What lies in the cache only, brought into memory once something needs it.
 
 use super::RunError;
-use super::steps::{Run, Step};
+use super::steps::{PipelineRun, StageOutcome};
 use std::sync::Arc;
 use std::time::Instant;
 use toile_core::artifact::stored;
 
-impl Run<'_> {
+impl PipelineRun<'_> {
     /// Brings what a report on the stages before `index` is given into memory: all but services.
     pub(super) fn ensure_before(&mut self, index: usize) -> Result<(), RunError> {
         for i in 0..index {
@@ -22,7 +22,7 @@ impl Run<'_> {
     /// Brings all that a stage made into memory.
     pub(super) fn ensure_all(&mut self, index: usize) -> Result<(), RunError> {
         let ports = match self.steps.get(index) {
-            Some(Step::Ran(ran)) => ran.outputs.len(),
+            Some(StageOutcome::Ran(ran)) => ran.outputs.len(),
             _ => 0,
         };
         (0..ports).try_for_each(|port| self.ensure(index, port, None))
@@ -37,7 +37,7 @@ impl Run<'_> {
         entries: Option<&[String]>,
     ) -> Result<(), RunError> {
         let (node, cache) = (&self.pipeline.nodes[index], self.cache.map(Arc::as_ref));
-        let Some(Step::Ran(ran)) = self.steps.get_mut(index) else { return Ok(()) };
+        let Some(StageOutcome::Ran(ran)) = self.steps.get_mut(index) else { return Ok(()) };
         let Some(held) = ran.outputs.get_mut(port) else { return Ok(()) };
         let lost = held.ensure(entries, cache);
         for (name, damage) in &lost {
@@ -64,7 +64,7 @@ impl Run<'_> {
                 cache.keep(&key, made);
             }
         }
-        let Some(Step::Ran(ran)) = self.steps.get_mut(index) else { return Ok(()) };
+        let Some(StageOutcome::Ran(ran)) = self.steps.get_mut(index) else { return Ok(()) };
         for made in &made {
             for (held, value) in ran.outputs.iter_mut().zip(&made.outputs) {
                 held.restore(&made.entry, value);

@@ -1,17 +1,17 @@
 //! What a run says of itself: digests of what every stage made, and the records that reports are
 //! given.
 
-use super::steps::{Ran, Run, Step};
-use super::value::Held;
+use super::steps::{PipelineRun, RanStage, StageOutcome};
+use super::value::HeldValue;
 use crate::cache::Fed;
 use toile_core::artifact::{Digest, Digester, stored};
 use toile_core::{Node, PortValue};
 use toile_core::{RunLog, StageRecord};
 
-impl Run<'_> {
+impl PipelineRun<'_> {
     /// The digest of what every stage made.
     pub(super) fn results(&self) -> Vec<(String, Option<Digest>)> {
-        let result = |ran: &Ran| {
+        let result = |ran: &RanStage| {
             let mut d = Digester::new();
             d.text("toile result").count(ran.outputs.len());
             for held in &ran.outputs {
@@ -21,8 +21,8 @@ impl Run<'_> {
         };
         let steps = self.pipeline.nodes.iter().zip(&self.steps);
         let ran = steps.filter_map(|(node, step)| match step {
-            Step::Ran(ran) => Some((node.id.clone(), result(ran))),
-            Step::Skipped(_) => None,
+            StageOutcome::Ran(ran) => Some((node.id.clone(), result(ran))),
+            StageOutcome::Skipped(_) => None,
         });
         ran.collect()
     }
@@ -37,11 +37,11 @@ impl Run<'_> {
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             d.text(&node.id);
             let ran = match step {
-                Step::Skipped(reason) => {
+                StageOutcome::Skipped(reason) => {
                     d.text("skipped").text(reason);
                     continue;
                 }
-                Step::Ran(ran) => ran,
+                StageOutcome::Ran(ran) => ran,
             };
             d.text(node.card.name).text(&node.stage.params()).count(ran.outputs.len());
             for held in &ran.outputs {
@@ -57,8 +57,8 @@ impl Run<'_> {
         let mut log = self.new_log();
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             match step {
-                Step::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
-                Step::Ran(ran) => {
+                StageOutcome::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
+                StageOutcome::Ran(ran) => {
                     let shown =
                         node.card.outputs.iter().zip(&ran.outputs).filter(|(o, _)| stored::is_stored(o.kind));
                     log.stages.push(self.record(node, ran, shown.map(|(_, held)| held)));
@@ -74,8 +74,8 @@ impl Run<'_> {
         let mut log = self.new_log();
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             match step {
-                Step::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
-                Step::Ran(ran) => log.stages.push(self.record(node, ran, ran.outputs.iter())),
+                StageOutcome::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
+                StageOutcome::Ran(ran) => log.stages.push(self.record(node, ran, ran.outputs.iter())),
             }
         }
         log
@@ -86,7 +86,12 @@ impl Run<'_> {
         RunLog { pipeline, quality, ..RunLog::default() }
     }
 
-    fn record<'h>(&self, node: &Node, ran: &Ran, held: impl Iterator<Item = &'h Held>) -> StageRecord {
+    fn record<'h>(
+        &self,
+        node: &Node,
+        ran: &RanStage,
+        held: impl Iterator<Item = &'h HeldValue>,
+    ) -> StageRecord {
         let outputs: Option<Vec<PortValue>> = held.map(|held| held.value(None)).collect();
         StageRecord {
             id: node.id.clone(),
@@ -104,7 +109,7 @@ impl Run<'_> {
 }
 
 /// Feeds a value's digests; none where it has none.
-fn feed(d: &mut Digester, held: &Held) -> Option<()> {
+fn feed(d: &mut Digester, held: &HeldValue) -> Option<()> {
     match held.fed(None) {
         Fed::One(hash) => d.bytes(&hash.0),
         Fed::Set(set) => set.iter().fold(d.count(set.len()), |d, (name, hash)| d.text(name).bytes(&hash.0)),

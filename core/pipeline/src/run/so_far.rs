@@ -1,7 +1,7 @@
 //! What a run that failed leaves for a look: what its stages made until then.
 
 use super::exports::exports;
-use super::steps::Run;
+use super::steps::PipelineRun;
 use super::{RunError, RunOptions};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,7 +17,7 @@ use toile_core::{Failure, RunLog, StageRecord};
 pub type SoFar = Arc<Mutex<Vec<OutputFile>>>;
 
 /// Fills [`RunOptions::so_far`].
-pub(super) fn leave(run: &mut Run<'_>, options: &RunOptions, error: &RunError) {
+pub(super) fn leave(run: &mut PipelineRun<'_>, options: &RunOptions, error: &RunError) {
     let Some(sink) = options.so_far.as_ref().filter(|_| error.error.code != ErrorCode::Cancelled) else {
         return;
     };
@@ -26,7 +26,7 @@ pub(super) fn leave(run: &mut Run<'_>, options: &RunOptions, error: &RunError) {
     *sink.lock().unwrap_or_else(PoisonError::into_inner) = files;
 }
 
-fn files(run: &mut Run<'_>, keep: bool, error: &RunError) -> Vec<OutputFile> {
+fn files(run: &mut PipelineRun<'_>, keep: bool, error: &RunError) -> Vec<OutputFile> {
     let failed = run.steps.len();
     for index in 0..failed {
         // What cannot be brought back is not shown.
@@ -84,7 +84,7 @@ fn is_page(node: &Node) -> bool {
     gives_files && node.inputs.len() == 1 && matches!(node.inputs[0], Feed::RunLog)
 }
 
-fn page(run: &Run<'_>, node: &Node, log: &RunLog) -> Vec<OutputFile> {
+fn page(run: &PipelineRun<'_>, node: &Node, log: &RunLog) -> Vec<OutputFile> {
     let inputs = Inputs(vec![Some(PortValue::One(Arc::new(log.clone())))]);
     let made = node.stage.run_ports(&inputs, &run.context(node, Arc::new(()))).unwrap_or_default();
     let artifacts = made.iter().flat_map(PortValue::entries).map(|(_, artifact)| artifact);

@@ -1,13 +1,13 @@
 //! A run under way: stage by stage, each from the cache where its result is known (`known`), and
 //! what lies in the cache only brought into memory once something needs it (`recall`).
 
-use super::node::{Failure, run_entries};
-use super::value::Held;
+use super::node::{EntryFailure, run_entries};
+use super::value::HeldValue;
 use super::{RunError, typed};
-use crate::cache::{Cache, Fed, Found, Ingredients, Parts, RUN_SO_FAR};
+use crate::cache::{Cache, CacheAnswer, Fed, Ingredients, Parts, RUN_SO_FAR};
 use crate::cost::{Expect, Meter, Predicted, Size, StageCost, Used};
 use crate::load::{Pipeline, Reads};
-use crate::made::Made;
+use crate::made::EntryResult;
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
@@ -19,27 +19,27 @@ use toile_core::{
 
 /// What became of a stage.
 #[derive(Clone)]
-pub(super) enum Step {
+pub(super) enum StageOutcome {
     /// Left out, with the reason.
     Skipped(String),
     /// Run, or found in the cache.
-    Ran(Ran),
+    Ran(RanStage),
 }
 
-impl Step {
+impl StageOutcome {
     /// The result of a stage that was not left out.
-    pub(super) fn ran(&self) -> Option<&Ran> {
+    pub(super) fn ran(&self) -> Option<&RanStage> {
         match self {
-            Step::Ran(ran) => Some(ran),
-            Step::Skipped(_) => None,
+            StageOutcome::Ran(ran) => Some(ran),
+            StageOutcome::Skipped(_) => None,
         }
     }
 }
 
 /// A stage that gave its result.
 #[derive(Clone)]
-pub(super) struct Ran {
-    pub(super) outputs: Vec<Held>,
+pub(super) struct RanStage {
+    pub(super) outputs: Vec<HeldValue>,
     pub(super) wall_s: f64,
     /// True while nothing of it had to be run.
     pub(super) cached: bool,
@@ -50,7 +50,7 @@ pub(super) struct Ran {
 }
 
 /// A run up to some stage.
-pub(super) struct Run<'a> {
+pub(super) struct PipelineRun<'a> {
     pub(super) pipeline: &'a Pipeline,
     pub(super) cache: Option<&'a Arc<Cache>>,
     pub(super) cancel: &'a Cancel,
@@ -58,7 +58,7 @@ pub(super) struct Run<'a> {
     pub(super) reads: Option<&'a Reads>,
     pub(super) meter: Option<&'a dyn Meter>,
     pub(super) expect: Option<&'a dyn Expect>,
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: Vec<StageOutcome>,
     /// Improving stages that pass on what they are given; the one that failed with what to tell the
     /// user.
     pub(super) undone: BTreeMap<usize, Option<String>>,
@@ -66,7 +66,7 @@ pub(super) struct Run<'a> {
     pub(super) so_far: Option<PortValue>,
 }
 
-impl Run<'_> {
+impl PipelineRun<'_> {
     /// Gives the next stage its result.
     pub(super) fn step(&mut self) -> Result<(), RunError> {
         let index = self.steps.len();
@@ -77,12 +77,12 @@ impl Run<'_> {
         cx.check().map_err(|e| located(self.pipeline, node, (String::new(), e)))?;
         if self.undone.contains_key(&index) {
             let ran = self.passed_on(index)?;
-            self.steps.push(Step::Ran(ran));
+            self.steps.push(StageOutcome::Ran(ran));
             return Ok(());
         }
         let searches = self.search(index).map_err(|e| located(self.pipeline, node, e))?;
         self.tell(node, &searches);
-        let missing = searches.iter().filter(|s| matches!(s.found, Found::Miss(_)));
+        let missing = searches.iter().filter(|s| matches!(s.found, CacheAnswer::Miss(_)));
         let missing: Vec<String> = missing.map(|s| s.entry.clone()).collect();
         let whole = missing.len() == searches.len() && !missing.is_empty();
         let (made, used) = self.make(index, &missing, &cx)?;
@@ -91,7 +91,7 @@ impl Run<'_> {
         ran.cost = cost;
         cx.progress(1.0, "");
         ran.wall_s = started.elapsed().as_secs_f64();
-        self.steps.push(Step::Ran(ran));
+        self.steps.push(StageOutcome::Ran(ran));
         Ok(())
     }
 
@@ -104,8 +104,8 @@ impl Run<'_> {
 
     /// What every stage took.
     pub(super) fn costs(&self) -> Vec<StageCost> {
-        let cost = |(node, step): (&Node, &Step)| match step {
-            Step::Ran(Ran { cost: Some((used, made)), .. }) => {
+        let cost = |(node, step): (&Node, &StageOutcome)| match step {
+            StageOutcome::Ran(RanStage { cost: Some((used, made)), .. }) => {
                 Some(StageCost { stage: node.id.clone(), used: *used, made: made.clone() })
             }
             _ => None,
@@ -116,7 +116,8 @@ impl Run<'_> {
     /// What a stage was expected to take, where it ran whole. A run that found in the cache all
     /// that a cache can hold is no news, and asks nobody.
     pub(super) fn expected(&self, index: usize) -> Option<Predicted> {
-        let ran_whole = |step: &Step| matches!(step, Step::Ran(Ran { cost: Some(_), .. }));
+        let ran_whole =
+            |step: &StageOutcome| matches!(step, StageOutcome::Ran(RanStage { cost: Some(_), .. }));
         let kept =
             |node: &Node| self.cache.is_none() || node.card.contracts.contains(&Contract::Deterministic);
         let mut steps = self.pipeline.nodes.iter().zip(&self.steps);
@@ -131,7 +132,7 @@ impl Run<'_> {
         index: usize,
         entries: &[String],
         cx: &Context,
-    ) -> Result<(Vec<Made>, Option<Used>), RunError> {
+    ) -> Result<(Vec<EntryResult>, Option<Used>), RunError> {
         let node = &self.pipeline.nodes[index];
         if entries.is_empty() {
             return Ok((Vec::new(), None));
@@ -177,10 +178,10 @@ impl Run<'_> {
         Inputs(node.card.inputs.iter().zip(&node.inputs).map(value).collect())
     }
 
-    pub(super) fn held(&self, node: usize, port: usize) -> Option<&Held> {
+    pub(super) fn held(&self, node: usize, port: usize) -> Option<&HeldValue> {
         match self.steps.get(node)? {
-            Step::Ran(ran) => ran.outputs.get(port),
-            Step::Skipped(_) => None,
+            StageOutcome::Ran(ran) => ran.outputs.get(port),
+            StageOutcome::Skipped(_) => None,
         }
     }
 
@@ -205,7 +206,7 @@ impl Run<'_> {
 
     /// The names of the sets on the mapped ports, which must all be the same; one empty name for a
     /// stage that is not mapped.
-    pub(super) fn entries(&self, index: usize) -> Result<Vec<String>, Failure> {
+    pub(super) fn entries(&self, index: usize) -> Result<Vec<String>, EntryFailure> {
         let node = &self.pipeline.nodes[index];
         if !node.card.is_mapped() {
             return Ok(vec![String::new()]);
@@ -246,13 +247,13 @@ impl Run<'_> {
 }
 
 /// How much was made, all entries and ports together.
-fn sizes(made: &[Made]) -> Size {
-    let ports = |m: &Made| m.outputs.iter().fold(Size::new(), |all, v| all.joined(&v.size()));
+fn sizes(made: &[EntryResult]) -> Size {
+    let ports = |m: &EntryResult| m.outputs.iter().fold(Size::new(), |all, v| all.joined(&v.size()));
     made.iter().fold(Size::new(), |sum, m| sum.plus(&ports(m)))
 }
 
 /// A failure with its place in the pipeline file.
-fn located(pipeline: &Pipeline, node: &Node, (entry, error): Failure) -> RunError {
+fn located(pipeline: &Pipeline, node: &Node, (entry, error): EntryFailure) -> RunError {
     let span = pipeline.given(node, &error).unwrap_or_else(|| node.span.clone());
     RunError { stage: node.id.clone(), entry, span, error }
 }

@@ -1,6 +1,6 @@
 //! Values of output ports during a run: each artifact is in memory, in the cache, or both.
 
-use crate::cache::{Blob, Cache, Fed, Kept, Lost};
+use crate::cache::{Blob, Cache, Fed, KeptValue, Lost};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::artifact::{Artifact, Kind};
@@ -8,7 +8,7 @@ use toile_core::{Card, PortValue};
 
 /// One artifact.
 #[derive(Debug, Clone)]
-pub(super) struct Slot {
+pub(super) struct ArtifactSlot {
     kind: Kind,
     /// Its digest and where it lies; none where nothing was kept.
     blob: Option<Blob>,
@@ -18,23 +18,23 @@ pub(super) struct Slot {
 
 /// The value of a port.
 #[derive(Debug, Clone)]
-pub(super) enum Held {
+pub(super) enum HeldValue {
     /// A single artifact.
-    One(Slot),
+    One(ArtifactSlot),
     /// A named set.
-    Set(Kind, BTreeMap<String, Slot>),
+    Set(Kind, BTreeMap<String, ArtifactSlot>),
     /// Nothing is known of it but its kind (in a forecast).
     Unknown,
 }
 
-impl Slot {
+impl ArtifactSlot {
     fn new(kind: Kind, blob: Option<Blob>, value: Option<Arc<dyn Artifact>>) -> Self {
-        Slot { kind, blob, value }
+        ArtifactSlot { kind, blob, value }
     }
 
     /// An artifact that has yet to be made.
     pub(super) fn unknown(kind: Kind) -> Self {
-        Slot::new(kind, None, None)
+        ArtifactSlot::new(kind, None, None)
     }
 
     fn ensure(&mut self, cache: Option<&Cache>) -> Result<(), Lost> {
@@ -46,53 +46,55 @@ impl Slot {
     }
 }
 
-impl Held {
+impl HeldValue {
     /// What a stage made on one port, or what the cache says of it, or both.
-    pub(super) fn of(kind: Kind, value: Option<&PortValue>, kept: Option<&Kept>) -> Self {
+    pub(super) fn of(kind: Kind, value: Option<&PortValue>, kept: Option<&KeptValue>) -> Self {
         let blob_of = |name: &str| match kept {
-            Some(Kept::Set(set)) => set.get(name).copied(),
+            Some(KeptValue::Set(set)) => set.get(name).copied(),
             _ => None,
         };
         match (value, kept) {
-            (Some(PortValue::One(artifact)), Some(Kept::One(blob))) => {
-                Held::One(Slot::new(kind, Some(*blob), Some(artifact.clone())))
+            (Some(PortValue::One(artifact)), Some(KeptValue::One(blob))) => {
+                HeldValue::One(ArtifactSlot::new(kind, Some(*blob), Some(artifact.clone())))
             }
-            (Some(PortValue::One(artifact)), _) => Held::One(Slot::new(kind, None, Some(artifact.clone()))),
+            (Some(PortValue::One(artifact)), _) => {
+                HeldValue::One(ArtifactSlot::new(kind, None, Some(artifact.clone())))
+            }
             (Some(PortValue::Set(_, set)), _) => {
                 let slot = |(n, a): (&String, &Arc<dyn Artifact>)| {
-                    (n.clone(), Slot::new(kind, blob_of(n), Some(a.clone())))
+                    (n.clone(), ArtifactSlot::new(kind, blob_of(n), Some(a.clone())))
                 };
-                Held::Set(kind, set.iter().map(slot).collect())
+                HeldValue::Set(kind, set.iter().map(slot).collect())
             }
-            (None, Some(Kept::One(blob))) => Held::One(Slot::new(kind, Some(*blob), None)),
-            (None, Some(Kept::Set(set))) => {
-                let slot = |(n, b): (&String, &Blob)| (n.clone(), Slot::new(kind, Some(*b), None));
-                Held::Set(kind, set.iter().map(slot).collect())
+            (None, Some(KeptValue::One(blob))) => HeldValue::One(ArtifactSlot::new(kind, Some(*blob), None)),
+            (None, Some(KeptValue::Set(set))) => {
+                let slot = |(n, b): (&String, &Blob)| (n.clone(), ArtifactSlot::new(kind, Some(*b), None));
+                HeldValue::Set(kind, set.iter().map(slot).collect())
             }
-            (None, None) => Held::Unknown,
+            (None, None) => HeldValue::Unknown,
         }
     }
 
     /// The names of its set.
     pub(super) fn names(&self) -> Option<Vec<String>> {
         match self {
-            Held::Set(_, set) => Some(set.keys().cloned().collect()),
+            HeldValue::Set(_, set) => Some(set.keys().cloned().collect()),
             _ => None,
         }
     }
 
     /// Its digests: of one entry where `entry` names one of a set.
     pub(super) fn fed(&self, entry: Option<&str>) -> Fed {
-        let hash = |slot: &Slot| slot.blob.map(|b| b.digest);
-        let one = |slot: Option<&Slot>| slot.and_then(hash).map_or(Fed::Unknown, Fed::One);
+        let hash = |slot: &ArtifactSlot| slot.blob.map(|b| b.digest);
+        let one = |slot: Option<&ArtifactSlot>| slot.and_then(hash).map_or(Fed::Unknown, Fed::One);
         match (self, entry) {
-            (Held::One(slot), _) => one(Some(slot)),
-            (Held::Set(_, set), Some(entry)) => one(set.get(entry)),
-            (Held::Set(_, set), None) => {
+            (HeldValue::One(slot), _) => one(Some(slot)),
+            (HeldValue::Set(_, set), Some(entry)) => one(set.get(entry)),
+            (HeldValue::Set(_, set), None) => {
                 let all = set.iter().map(|(n, s)| Some((n.clone(), hash(s)?)));
                 all.collect::<Option<_>>().map_or(Fed::Unknown, Fed::Set)
             }
-            (Held::Unknown, _) => Fed::Unknown,
+            (HeldValue::Unknown, _) => Fed::Unknown,
         }
     }
 
@@ -104,7 +106,7 @@ impl Held {
         cache: Option<&Cache>,
     ) -> Vec<(String, Option<String>)> {
         let wanted = |name: &String| entries.is_none_or(|e| e.contains(name));
-        let lost = |name: &str, slot: &mut Slot| {
+        let lost = |name: &str, slot: &mut ArtifactSlot| {
             let why = match slot.ensure(cache) {
                 Ok(()) => return None,
                 Err(Lost::Gone) => None,
@@ -113,24 +115,24 @@ impl Held {
             Some((name.to_owned(), why))
         };
         match self {
-            Held::One(slot) => lost("", slot).into_iter().collect(),
-            Held::Set(_, set) => {
+            HeldValue::One(slot) => lost("", slot).into_iter().collect(),
+            HeldValue::Set(_, set) => {
                 set.iter_mut().filter(|(n, _)| wanted(n)).filter_map(|(n, s)| lost(n, s)).collect()
             }
-            Held::Unknown => Vec::new(),
+            HeldValue::Unknown => Vec::new(),
         }
     }
 
     /// Puts in what was made anew; `entry` is empty for a stage that is not mapped.
     pub(super) fn restore(&mut self, entry: &str, made: &PortValue) {
         match (self, made) {
-            (Held::One(slot), PortValue::One(a)) => slot.value = Some(a.clone()),
-            (Held::Set(_, set), PortValue::One(a)) => {
+            (HeldValue::One(slot), PortValue::One(a)) => slot.value = Some(a.clone()),
+            (HeldValue::Set(_, set), PortValue::One(a)) => {
                 if let Some(slot) = set.get_mut(entry) {
                     slot.value = Some(a.clone());
                 }
             }
-            (Held::Set(_, set), PortValue::Set(_, all)) => {
+            (HeldValue::Set(_, set), PortValue::Set(_, all)) => {
                 for (slot, a) in set.iter_mut().filter_map(|(n, s)| Some((s, all.get(n)?))) {
                     slot.value = Some(a.clone());
                 }
@@ -143,26 +145,26 @@ impl Held {
     /// in memory.
     pub(super) fn value(&self, entry: Option<&str>) -> Option<PortValue> {
         match (self, entry) {
-            (Held::One(slot), _) => slot.value.clone().map(PortValue::One),
-            (Held::Set(_, set), Some(entry)) => set.get(entry)?.value.clone().map(PortValue::One),
-            (Held::Set(kind, set), None) => {
+            (HeldValue::One(slot), _) => slot.value.clone().map(PortValue::One),
+            (HeldValue::Set(_, set), Some(entry)) => set.get(entry)?.value.clone().map(PortValue::One),
+            (HeldValue::Set(kind, set), None) => {
                 let all = set.iter().map(|(n, s)| Some((n.clone(), s.value.clone()?)));
                 all.collect::<Option<_>>().map(|set| PortValue::Set(*kind, set))
             }
-            (Held::Unknown, _) => None,
+            (HeldValue::Unknown, _) => None,
         }
     }
 }
 
 /// The values of a mapped stage's ports, put together from its entries.
-pub(super) fn gather(card: &Card, entries: &[(String, Vec<Held>)]) -> Vec<Held> {
+pub(super) fn gather(card: &Card, entries: &[(String, Vec<HeldValue>)]) -> Vec<HeldValue> {
     let port = |(i, out): (usize, &toile_core::OutPort)| {
-        let slot = |(name, held): &(String, Vec<Held>)| match held.get(i) {
-            Some(Held::One(slot)) => Some((name.clone(), slot.clone())),
-            Some(Held::Unknown) => Some((name.clone(), Slot::unknown(out.kind))),
+        let slot = |(name, held): &(String, Vec<HeldValue>)| match held.get(i) {
+            Some(HeldValue::One(slot)) => Some((name.clone(), slot.clone())),
+            Some(HeldValue::Unknown) => Some((name.clone(), ArtifactSlot::unknown(out.kind))),
             _ => None,
         };
-        Held::Set(out.kind, entries.iter().filter_map(slot).collect())
+        HeldValue::Set(out.kind, entries.iter().filter_map(slot).collect())
     };
     card.outputs.iter().enumerate().map(port).collect()
 }

@@ -23,18 +23,18 @@ const MOST_CUTS: usize = 10_000;
 
 /// Where every edge that is sewn is cut.
 #[derive(Debug)]
-pub(super) struct Cuts<'a>(BTreeMap<&'a EdgeRef, Cut>);
+pub(super) struct EdgeCuts<'a>(BTreeMap<&'a EdgeRef, EdgeCut>);
 
 /// The length of an edge and where it is cut, ascending, metres from its start.
 #[derive(Debug)]
-struct Cut {
+struct EdgeCut {
     length: f64,
     at: Vec<f64>,
 }
 
 /// A part of an edge as one link of a side.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Link<'a> {
+pub(super) struct ChainLink<'a> {
     pub edge: &'a EdgeRef,
     /// Which of the parts between its cuts, from its start.
     pub part: usize,
@@ -42,14 +42,15 @@ pub(super) struct Link<'a> {
     pub reversed: bool,
 }
 
-impl<'a> Cuts<'a> {
+impl<'a> EdgeCuts<'a> {
     /// The cuts of a sound pattern.
     pub(super) fn of(pattern: &'a Pattern) -> Result<Self, LoweringError> {
         let uses = pattern.seams.iter().flat_map(|s| s.sides.iter().flatten());
         let length = |u: &EdgeUse| {
             pattern.piece(&u.edge.panel).and_then(|p| p.path(&u.edge.edge)).map_or(0.0, |p| p.length())
         };
-        let mut cuts = Cuts(uses.map(|u| (&u.edge, Cut { length: length(u), at: Vec::new() })).collect());
+        let mut cuts =
+            EdgeCuts(uses.map(|u| (&u.edge, EdgeCut { length: length(u), at: Vec::new() })).collect());
         for _ in 0..ROUNDS {
             let before = cuts.count();
             for s in &pattern.seams {
@@ -79,11 +80,11 @@ impl<'a> Cuts<'a> {
     }
 
     /// The links of a side, in its order.
-    pub(super) fn links(&self, side: &'a [EdgeUse]) -> Vec<Link<'a>> {
+    pub(super) fn links(&self, side: &'a [EdgeUse]) -> Vec<ChainLink<'a>> {
         let parts = |u: &'a EdgeUse| {
             let n = self.at(&u.edge).len() + 1;
             let part = move |k| if u.reversed { n - 1 - k } else { k };
-            (0..n).map(move |k| Link { edge: &u.edge, part: part(k), reversed: u.reversed })
+            (0..n).map(move |k| ChainLink { edge: &u.edge, part: part(k), reversed: u.reversed })
         };
         side.iter().flat_map(parts).collect()
     }

@@ -107,12 +107,12 @@ impl EdgeCurve {
 /// An edge with its ends: what can be measured and drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgePath {
-    shape: Shape,
+    shape: CurveShape,
     length: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Shape {
+enum CurveShape {
     Quadratic(QuadBez),
     Cubic(CubicBez),
     /// Centre, the start seen from it, and the angle that it turns by.
@@ -128,11 +128,11 @@ impl EdgePath {
         match curve {
             EdgeCurve::Quadratic { control } => {
                 let bezier = QuadBez::new(k(start), k(*control), k(end));
-                EdgePath { length: bezier.arclen(ACCURACY), shape: Shape::Quadratic(bezier) }
+                EdgePath { length: bezier.arclen(ACCURACY), shape: CurveShape::Quadratic(bezier) }
             }
             EdgeCurve::Cubic { controls: [a, b] } => {
                 let bezier = CubicBez::new(k(start), k(*a), k(*b), k(end));
-                EdgePath { length: bezier.arclen(ACCURACY), shape: Shape::Cubic(bezier) }
+                EdgePath { length: bezier.arclen(ACCURACY), shape: CurveShape::Cubic(bezier) }
             }
             EdgeCurve::Arc { bulge } if bulge.abs() > 1e-12 => Self::arc(start, end, *bulge),
             EdgeCurve::Line | EdgeCurve::Arc { .. } => Self::polyline(vec![start, end]),
@@ -150,7 +150,7 @@ impl EdgePath {
         let height = (1.0 - bulge * bulge) / (4.0 * bulge);
         let centre = nalgebra::center(&start, &end) + Vector2::new(-chord.y, chord.x) * height;
         let radius = chord.norm() * (1.0 + bulge * bulge) / (4.0 * bulge.abs());
-        EdgePath { shape: Shape::Arc(centre, start - centre, angle), length: radius * angle.abs() }
+        EdgePath { shape: CurveShape::Arc(centre, start - centre, angle), length: radius * angle.abs() }
     }
 
     /// Straight from point to point.
@@ -159,7 +159,7 @@ impl EdgePath {
         for w in points.windows(2) {
             along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
         }
-        EdgePath { length: polyline_length(&points), shape: Shape::Polyline(points, along) }
+        EdgePath { length: polyline_length(&points), shape: CurveShape::Polyline(points, along) }
     }
 
     /// Its length, metres, to [`ACCURACY`].
@@ -175,7 +175,7 @@ impl EdgePath {
     /// Points from one length to another, both included, near enough to draw it by: a millimetre
     /// apart on a curve.
     pub fn between(&self, from: f64, to: f64) -> Vec<Point2> {
-        if let Shape::Polyline(points, along) = &self.shape {
+        if let CurveShape::Polyline(points, along) = &self.shape {
             let inside = points.iter().zip(along).filter(|(_, s)| **s > from && **s < to).map(|(p, _)| *p);
             return std::iter::once(self.at(from)).chain(inside).chain([self.at(to)]).collect();
         }
@@ -195,19 +195,19 @@ impl EdgePath {
             // The ends are met exactly, so that edges which follow each other share their corner.
             _ if length <= 0.0 => 0.0,
             _ if length >= self.length => 1.0,
-            Shape::Quadratic(q) => q.inv_arclen(length, ACCURACY),
-            Shape::Cubic(c) => c.inv_arclen(length, ACCURACY),
-            Shape::Arc(..) | Shape::Polyline(..) => length / self.length,
+            CurveShape::Quadratic(q) => q.inv_arclen(length, ACCURACY),
+            CurveShape::Cubic(c) => c.inv_arclen(length, ACCURACY),
+            CurveShape::Arc(..) | CurveShape::Polyline(..) => length / self.length,
         }
     }
 
     fn eval(&self, t: f64) -> Point2 {
         let of = |p: kurbo::Point| Point2::new(p.x, p.y);
         match &self.shape {
-            Shape::Quadratic(q) => of(q.eval(t)),
-            Shape::Cubic(c) => of(c.eval(t)),
-            Shape::Arc(centre, start, angle) => centre + nalgebra::Rotation2::new(angle * t) * start,
-            Shape::Polyline(points, along) => {
+            CurveShape::Quadratic(q) => of(q.eval(t)),
+            CurveShape::Cubic(c) => of(c.eval(t)),
+            CurveShape::Arc(centre, start, angle) => centre + nalgebra::Rotation2::new(angle * t) * start,
+            CurveShape::Polyline(points, along) => {
                 let s = t * self.length;
                 let last = points.len() - 1;
                 let k = along.partition_point(|a| *a <= s).clamp(1, last.max(1)) - 1;

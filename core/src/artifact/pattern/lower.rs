@@ -10,7 +10,7 @@
 use super::super::{
     Edge, EdgeRef, Gauge, InnerKind, InnerLine, Loop, Outline, Point2, Seam, SeamKind, SewingPlan,
 };
-use super::chain::{Cuts, Link};
+use super::chain::{ChainLink, EdgeCuts};
 use super::{EdgePath, LinePurpose, LoweringError, Pattern, PatternSeam, Piece};
 use crate::parallel;
 use std::collections::{BTreeMap, BTreeSet};
@@ -49,8 +49,8 @@ impl Pattern {
 
     fn lowered(&self) -> Result<Lowered, LoweringError> {
         self.seams.iter().try_for_each(not_itself)?;
-        let cuts = Cuts::of(self)?;
-        let names: Vec<Names> = self.pieces.iter().map(|p| Names::of(p, &cuts)).collect();
+        let cuts = EdgeCuts::of(self)?;
+        let names: Vec<PartNames> = self.pieces.iter().map(|p| PartNames::of(p, &cuts)).collect();
         let sewn: BTreeSet<&EdgeRef> =
             self.seams.iter().flat_map(|s| s.sides.iter().flatten()).map(|u| &u.edge).collect();
         let (mut notes, mut warnings) = (Vec::new(), Vec::new());
@@ -64,7 +64,7 @@ impl Pattern {
             warnings
                 .extend(slits.map(|l| format!("the slit \"{}\" of piece \"{}\" is not cut", l.name, p.name)));
         }
-        let by_name: BTreeMap<&str, &Names> =
+        let by_name: BTreeMap<&str, &PartNames> =
             self.pieces.iter().zip(&names).map(|(p, n)| (p.name.as_str(), n)).collect();
         let (mut seams, mut gathers) = (Vec::new(), Vec::new());
         for s in &self.seams {
@@ -137,11 +137,11 @@ fn kind<'a>(pattern: &Pattern, s: &'a PatternSeam, gathers: &mut Vec<Gather<'a>>
 }
 
 /// The names of the parts of a piece's edges and lines.
-struct Names(BTreeMap<String, Vec<String>>);
+struct PartNames(BTreeMap<String, Vec<String>>);
 
-impl Names {
+impl PartNames {
     /// An edge in one part keeps its name; parts are numbered from 1, and no name is given twice.
-    fn of(piece: &Piece, cuts: &Cuts<'_>) -> Self {
+    fn of(piece: &Piece, cuts: &EdgeCuts<'_>) -> Self {
         let all = piece.outer.edges.iter().map(|e| &e.name).chain(piece.lines.iter().map(|l| &l.name));
         let mut taken: BTreeSet<String> = all.clone().cloned().collect();
         let mut parts = BTreeMap::new();
@@ -158,7 +158,7 @@ impl Names {
             let list = if n == 1 { vec![name.clone()] } else { (0..n).map(&mut named).collect() };
             parts.insert(name.clone(), list);
         }
-        Names(parts)
+        PartNames(parts)
     }
 
     fn part(&self, edge: &str, part: usize) -> String {
@@ -166,8 +166,8 @@ impl Names {
     }
 }
 
-fn seam(a: &Link<'_>, b: &Link<'_>, kind: SeamKind, names: &BTreeMap<&str, &Names>) -> Seam {
-    let of = |l: &Link<'_>| {
+fn seam(a: &ChainLink<'_>, b: &ChainLink<'_>, kind: SeamKind, names: &BTreeMap<&str, &PartNames>) -> Seam {
+    let of = |l: &ChainLink<'_>| {
         let panel = l.edge.panel.as_str();
         let edge = names.get(panel).map_or_else(|| l.edge.edge.clone(), |n| n.part(&l.edge.edge, l.part));
         EdgeRef { panel: panel.to_owned(), edge }
@@ -178,7 +178,7 @@ fn seam(a: &Link<'_>, b: &Link<'_>, kind: SeamKind, names: &BTreeMap<&str, &Name
 }
 
 /// The outline of a piece, each edge with the gauge that suits it alone.
-fn outline(piece: &Piece, names: &Names, cuts: &Cuts<'_>, sewn: &BTreeSet<&EdgeRef>) -> Outline {
+fn outline(piece: &Piece, names: &PartNames, cuts: &EdgeCuts<'_>, sewn: &BTreeSet<&EdgeRef>) -> Outline {
     let (mut points, mut starts, mut drawn, mut corners) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (k, e) in piece.outer.edges.iter().enumerate() {
         let ends = [piece.outer.corners[k], piece.outer.corners[(k + 1) % piece.outer.corners.len()]];
@@ -233,7 +233,7 @@ fn parts(
     path: &EdgePath,
     piece: &Piece,
     name: &str,
-    cuts: &Cuts<'_>,
+    cuts: &EdgeCuts<'_>,
     ends: Option<[Point2; 2]>,
 ) -> Vec<Vec<Point2>> {
     let at = EdgeRef { panel: piece.name.clone(), edge: name.to_owned() };

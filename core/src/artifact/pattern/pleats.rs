@@ -17,7 +17,7 @@ const NEAR: f64 = 3e-3;
 const ALIKE: f64 = 1e-6;
 
 /// A pleat at an edge: where its lines end on it, metres from the edge's start.
-struct Laid {
+struct LaidPleat {
     name: String,
     fold: PleatFold,
     piece: usize,
@@ -26,9 +26,9 @@ struct Laid {
 }
 
 /// A stretch of an edge, metres from its start.
-type Stretch = [f64; 2];
+type EdgeStretch = [f64; 2];
 
-impl Laid {
+impl LaidPleat {
     fn low(&self) -> f64 {
         self.ends[0].min(self.ends[1])
     }
@@ -39,7 +39,7 @@ impl Laid {
 
     /// The layers that lie on each other, groups of stretches, each from its fold that is seen;
     /// what lies on top is the last of its group.
-    fn layers(&self) -> Vec<Vec<Stretch>> {
+    fn layers(&self) -> Vec<Vec<EdgeStretch>> {
         let [a, c] = self.ends;
         match self.fold {
             PleatFold::Knife => {
@@ -61,7 +61,7 @@ impl Pattern {
     /// The same with the layers of its pleats sewn into the edges that they end on; nothing where
     /// no pleat ends on an edge.
     pub(super) fn pleated(&self) -> Option<Pattern> {
-        let laid: Vec<Laid> = self.seams.iter().filter_map(|s| laid(self, s)).collect();
+        let laid: Vec<LaidPleat> = self.seams.iter().filter_map(|s| laid(self, s)).collect();
         if laid.is_empty() {
             return None;
         }
@@ -71,7 +71,7 @@ impl Pattern {
         edges.dedup();
         // The last edge of a piece first, so that the numbers of the others stay.
         for (piece, edge) in edges.into_iter().rev() {
-            let mine: Vec<&Laid> = laid.iter().filter(|l| (l.piece, l.edge) == (piece, edge)).collect();
+            let mine: Vec<&LaidPleat> = laid.iter().filter(|l| (l.piece, l.edge) == (piece, edge)).collect();
             cut(&mut out, piece, edge, &mine);
         }
         Some(out)
@@ -79,7 +79,7 @@ impl Pattern {
 }
 
 /// Where a pleat's lines end on an outer edge.
-fn laid(pattern: &Pattern, s: &PatternSeam) -> Option<Laid> {
+fn laid(pattern: &Pattern, s: &PatternSeam) -> Option<LaidPleat> {
     let SeamKind::Pleat(fold) = s.kind else { return None };
     let ([[a], [b]], 2) = ([&s.sides[0][..], &s.sides[s.sides.len() - 1][..]], s.sides.len()) else {
         return None;
@@ -94,7 +94,7 @@ fn laid(pattern: &Pattern, s: &PatternSeam) -> Option<Laid> {
     let both =
         one.iter().flat_map(|x| other.iter().filter(move |y| x.0 == y.0).map(move |y| (x.0, [x.1, y.1])));
     let (edge, ends) = both.into_iter().next()?;
-    ((ends[0] - ends[1]).abs() > ALIKE).then(|| Laid { name: s.name.clone(), fold, piece, edge, ends })
+    ((ends[0] - ends[1]).abs() > ALIKE).then(|| LaidPleat { name: s.name.clone(), fold, piece, edge, ends })
 }
 
 /// The outer edge on which a point lies, and where.
@@ -119,11 +119,11 @@ fn on_edge(piece: &Piece, p: Point2) -> Option<(usize, f64)> {
 }
 
 /// Cuts an edge at its pleats and sews their layers.
-fn cut(out: &mut Pattern, piece: usize, edge: usize, laid: &[&Laid]) {
+fn cut(out: &mut Pattern, piece: usize, edge: usize, laid: &[&LaidPleat]) {
     let path = out.pieces[piece].outer.path(edge);
     let length = path.length();
     let hidden = |s: f64| laid.iter().any(|l| s > l.low() + ALIKE && s < l.high() - ALIKE);
-    let mut groups: Vec<(String, Vec<Stretch>)> = Vec::new();
+    let mut groups: Vec<(String, Vec<EdgeStretch>)> = Vec::new();
     for l in laid {
         for mut group in l.layers() {
             let seen = group[2];
@@ -150,7 +150,7 @@ fn cut(out: &mut Pattern, piece: usize, edge: usize, laid: &[&Laid]) {
     for s in &mut out.seams {
         s.sides.iter_mut().for_each(|side| *side = side.iter().flat_map(|u| seen(u, &old, &parts)).collect());
     }
-    let side = |of: Stretch| -> Vec<EdgeUse> {
+    let side = |of: EdgeStretch| -> Vec<EdgeUse> {
         let reversed = of[0] > of[1];
         let within = |w: &[f64]| {
             let middle = 0.5 * (w[0] + w[1]);

@@ -16,7 +16,7 @@ const FREE: &str = "#333333";
 
 pub(super) fn svg(pattern: &Pattern) -> String {
     let colours = colours(pattern);
-    let drawn: Vec<Drawn<'_>> = pattern.pieces.iter().map(Drawn::new).collect();
+    let drawn: Vec<SizedPiece<'_>> = pattern.pieces.iter().map(SizedPiece::new).collect();
     let area: f64 = drawn.iter().map(|d| (d.size[0] + GAP) * (d.size[1] + GAP)).sum();
     let widest = drawn.iter().map(|d| d.size[0] + GAP).fold(0.0, f64::max);
     let row = (area * ASPECT).sqrt().max(widest);
@@ -62,13 +62,13 @@ fn colour(hue: f64, lightness: f64) -> String {
 }
 
 /// A piece with its least corner, in metres, and its size in mm.
-struct Drawn<'a> {
+struct SizedPiece<'a> {
     piece: &'a Piece,
     low: Point2,
     size: [f64; 2],
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> SizedPiece<'a> {
     fn new(piece: &'a Piece) -> Self {
         let points = piece.outer.points().0;
         let (mut lo, mut hi) =
@@ -77,7 +77,7 @@ impl<'a> Drawn<'a> {
             (lo, hi) = (lo.inf(p), hi.sup(p));
         }
         let size = if points.is_empty() { [0.0; 2] } else { [(hi.x - lo.x) * 1e3, (hi.y - lo.y) * 1e3] };
-        Drawn { piece, low: lo, size }
+        SizedPiece { piece, low: lo, size }
     }
 
     /// Draws it with its upper left corner there.

@@ -7,13 +7,13 @@ use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
 /// Bytes shown where they lie, and who keeps them there.
-pub type Kept = (ManuallyDrop<Vec<u8>>, Arc<dyn Any + Send + Sync>);
+pub type KeptBytes = (ManuallyDrop<Vec<u8>>, Arc<dyn Any + Send + Sync>);
 
 /// Someone who can be asked to keep a list of bytes that was lent.
 pub trait Lend: std::fmt::Debug + Send + Sync {
     /// Keeps the bytes, the list that this owner was named for, for as long as the keeper lives;
     /// none where that cannot be. The vector must neither grow nor be freed.
-    fn keep(&self, bytes: &[u8]) -> Option<Kept>;
+    fn keep(&self, bytes: &[u8]) -> Option<KeptBytes>;
 }
 
 /// A lent list as a picture, where it lies; none where its owner cannot keep it.

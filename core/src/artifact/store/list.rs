@@ -11,12 +11,12 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Default)]
 pub struct Record<'a> {
     /// The fields.
-    pub fields: Vec<Field<'a>>,
+    pub fields: Vec<RecordField<'a>>,
 }
 
 /// One field of a record.
 #[derive(Debug, Clone)]
-pub struct Field<'a> {
+pub struct RecordField<'a> {
     /// Its name, such as `positions`.
     pub name: Cow<'a, str>,
     /// How many numbers make one element: 3 for points in space.
@@ -25,12 +25,12 @@ pub struct Field<'a> {
     pub data: Data<'a>,
     /// Who keeps its memory beyond the record, where somebody does: then it may be lent and not
     /// copied.
-    pub owner: Owner,
+    pub owner: MemoryOwner,
 }
 
 /// Who keeps the memory of a list.
 #[derive(Debug, Clone, Default)]
-pub enum Owner {
+pub enum MemoryOwner {
     /// Nobody beyond the record.
     #[default]
     None,
@@ -211,7 +211,7 @@ impl<'a> Record<'a> {
 
     /// Adds a field.
     pub fn field(mut self, name: &'a str, width: u32, data: Data<'a>) -> Self {
-        self.fields.push(Field { name: Cow::Borrowed(name), width, data, owner: Owner::None });
+        self.fields.push(RecordField { name: Cow::Borrowed(name), width, data, owner: MemoryOwner::None });
         self
     }
 
@@ -224,7 +224,12 @@ impl<'a> Record<'a> {
         owner: Arc<dyn Any + Send + Sync>,
     ) -> Self {
         let data = Data::U8(Cow::Borrowed(bytes));
-        self.fields.push(Field { name: Cow::Borrowed(name), width, data, owner: Owner::Own(owner) });
+        self.fields.push(RecordField {
+            name: Cow::Borrowed(name),
+            width,
+            data,
+            owner: MemoryOwner::Own(owner),
+        });
         self
     }
 }

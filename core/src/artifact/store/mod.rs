@@ -7,6 +7,6 @@ mod read;
 pub(crate) mod shared;
 pub(crate) mod sound;
 
-pub use lend::{Kept, Lend};
-pub use list::{Data, Field, Listed, Owner, Record};
+pub use lend::{KeptBytes, Lend};
+pub use list::{Data, Listed, MemoryOwner, Record, RecordField};
 pub use read::Reader;

@@ -1,6 +1,6 @@
 //! Asking a record for its fields.
 
-use super::list::{Data, Field, Listed, Owner, Record};
+use super::list::{Data, Listed, MemoryOwner, Record, RecordField};
 use crate::artifact::Shared;
 use crate::artifact::{GrayImage, Picture, RgbImage};
 
@@ -15,11 +15,11 @@ impl<'a> Reader<'a> {
     }
 
     /// The field of that name, where there is one.
-    pub fn find(&self, name: &str) -> Option<&'a Field<'a>> {
+    pub fn find(&self, name: &str) -> Option<&'a RecordField<'a>> {
         self.0.fields.iter().find(|f| f.name == name)
     }
 
-    fn field(&self, name: &str) -> Result<&'a Field<'a>, String> {
+    fn field(&self, name: &str) -> Result<&'a RecordField<'a>, String> {
         self.find(name).ok_or_else(|| format!("the field `{name}` is missing"))
     }
 
@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
             return Err(format!("`{name}` has {} bytes, {w} x {h} pixels are {wanted}", bytes.len()));
         }
         let lent = match &field.owner {
-            Owner::Foreign(owner) => super::lend::picture(owner.as_ref(), bytes, w, h),
+            MemoryOwner::Foreign(owner) => super::lend::picture(owner.as_ref(), bytes, w, h),
             _ => None,
         };
         let copied = || P::of_bytes(w, h, bytes.to_vec()).map(Shared::new);

@@ -4,7 +4,7 @@
 //! (u32), and of each its name (u32 and bytes), type (u8), width (u32), count (u64) and numbers.
 
 use super::MAX_DEPTH;
-use super::{Data, Field, Owner, Record};
+use super::{Data, MemoryOwner, Record, RecordField};
 use crate::artifact::Kind;
 use bytemuck::{Pod, cast_slice, pod_collect_to_vec};
 use std::borrow::Cow;
@@ -58,7 +58,7 @@ fn tag(data: &Data<'_>) -> u8 {
 }
 
 pub(super) fn read(kind: Kind, bytes: &[u8]) -> Result<Record<'_>, String> {
-    let mut bytes = Bytes(bytes);
+    let mut bytes = UnreadBytes(bytes);
     if bytes.take(MAGIC.len() as u64)? != MAGIC {
         return Err("it is no stored artifact of this version".into());
     }
@@ -74,9 +74,9 @@ pub(super) fn read(kind: Kind, bytes: &[u8]) -> Result<Record<'_>, String> {
 }
 
 /// What has not been read yet.
-struct Bytes<'a>(&'a [u8]);
+struct UnreadBytes<'a>(&'a [u8]);
 
-impl<'a> Bytes<'a> {
+impl<'a> UnreadBytes<'a> {
     fn take(&mut self, count: u64) -> Result<&'a [u8], String> {
         let count = usize::try_from(count).ok().filter(|n| *n <= self.0.len());
         let (taken, rest) = self.0.split_at(count.ok_or("it ends too early")?);
@@ -118,7 +118,7 @@ impl<'a> Bytes<'a> {
         Ok(record)
     }
 
-    fn field(&mut self, depth: usize) -> Result<Field<'a>, String> {
+    fn field(&mut self, depth: usize) -> Result<RecordField<'a>, String> {
         let name = Cow::Borrowed(self.text()?);
         let tag = self.take(1)?[0];
         let (width, count) = (self.u32()?, self.u64()?);
@@ -132,7 +132,7 @@ impl<'a> Bytes<'a> {
             7 => Data::Records(self.records(count, depth)?),
             other => return Err(format!("the field `{name}` has the unknown type {other}")),
         };
-        Ok(Field { name, width, data, owner: Owner::None })
+        Ok(RecordField { name, width, data, owner: MemoryOwner::None })
     }
 
     fn records(&mut self, count: u64, depth: usize) -> Result<Vec<Record<'a>>, String> {

@@ -17,7 +17,7 @@ mod solid;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use super::store::{Data, Field, Listed, Owner, Reader, Record};
+pub use super::store::{Data, Listed, MemoryOwner, Reader, Record, RecordField};
 
 use crate::artifact::{Artifact, ArtifactType, Kind};
 use std::sync::Arc;
@@ -74,10 +74,10 @@ pub fn kind_named(name: &str) -> Option<Kind> {
     MAKERS.iter().map(|(k, _)| *k).chain(services).find(|k| k.0 == name)
 }
 
-type Make = fn(&Record<'_>) -> Result<Arc<dyn Artifact>, String>;
+type MakeArtifact = fn(&Record<'_>) -> Result<Arc<dyn Artifact>, String>;
 
 /// Every kind that has a record.
-const MAKERS: [(Kind, Make); 13] = [
+const MAKERS: [(Kind, MakeArtifact); 13] = [
     maker::<crate::artifact::Photo>(),
     maker::<crate::artifact::Mask>(),
     maker::<crate::artifact::Outline>(),
@@ -93,7 +93,7 @@ const MAKERS: [(Kind, Make); 13] = [
     maker::<crate::artifact::OutputFiles>(),
 ];
 
-const fn maker<T: Stored>() -> (Kind, Make) {
+const fn maker<T: Stored>() -> (Kind, MakeArtifact) {
     (T::KIND, make::<T>)
 }
 

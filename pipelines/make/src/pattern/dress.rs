@@ -3,7 +3,7 @@
 //!
 //! For the mannequin of 172 cm, bust 88 and waist 70 cm: 95 cm at the bust, 74 cm at the waist.
 
-use super::{Garment, P, Panel, bent, curve, dart, distance, line, sleeve};
+use super::{DraftGarment, DraftPanel, PlanePoint, bent, curve, dart, distance, line, sleeve};
 
 /// The height of the waist seam above the floor.
 const WAIST: f64 = 109.0;
@@ -18,12 +18,12 @@ const ABOVE: f64 = 3.5;
 
 /// Corners of the bodice on the wearer's left, from its middle at the waist.
 struct Bodice {
-    waist: P,
-    armpit: P,
-    shoulder: P,
-    neck: P,
+    waist: PlanePoint,
+    armpit: PlanePoint,
+    shoulder: PlanePoint,
+    neck: PlanePoint,
     /// Controls of the armhole, from armpit to shoulder.
-    armhole: [P; 2],
+    armhole: [PlanePoint; 2],
     depth: f64,
     half: f64,
     dart: f64,
@@ -50,13 +50,13 @@ const BACK: Bodice = Bodice {
     dart: 14.0,
 };
 
-fn mirror([x, y]: P) -> P {
+fn mirror([x, y]: PlanePoint) -> PlanePoint {
     [-x, y]
 }
 
 /// A bodice before the body; the bust dart takes in what the side is longer than `side`, if it is
 /// to.
-fn bodice(name: &str, b: &Bodice, side: Option<f64>) -> Panel {
+fn bodice(name: &str, b: &Bodice, side: Option<f64>) -> DraftPanel {
     let width = b.waist[0] - b.half;
     let [inner, tip, outer] = dart([0.0, 0.0], b.waist, INNER + width / 2.0, width, b.dart);
     let long = distance(b.waist, b.armpit);
@@ -89,18 +89,18 @@ fn bodice(name: &str, b: &Bodice, side: Option<f64>) -> Panel {
         // The lowest point of a parabola lies at half the height of its control.
         bent("neck", 0.5, 2.0 * b.depth / (2.0 * b.neck[0])),
         line("shoulder_right"),
-        super::Edge { name: "armhole_right", ..armhole.reversed(1.0) },
+        super::DraftEdge { name: "armhole_right", ..armhole.reversed(1.0) },
         line("side_right_high"),
     ]);
     if side.is_some() {
         edges.extend([line("bust_right_high"), line("bust_right_low")]);
     }
     edges.extend([line("side_right_low"), line("waist_right")]);
-    Panel::new(name, "body", &corners, &edges, [0.0, WAIST, 20.0])
+    DraftPanel::new(name, "body", &corners, &edges, [0.0, WAIST, 20.0])
 }
 
 /// Half of the skirt before the body; its upper edge has the parts of the bodice's waist.
-fn skirt(name: &str, half: f64) -> Panel {
+fn skirt(name: &str, half: f64) -> DraftPanel {
     let (inner, outer, hem) = (GATHER * INNER, GATHER * half, GATHER * half + 9.0);
     let long = 56.0;
     let corners = [[-hem, -long], [hem, -long], [outer, 0.0], [inner, 0.0], [-inner, 0.0], [-outer, 0.0]];
@@ -112,13 +112,13 @@ fn skirt(name: &str, half: f64) -> Panel {
         line("waist_right"),
         line("side_right"),
     ];
-    Panel::new(name, "body", &corners, &edges, [0.0, WAIST - 2.0, 20.0])
+    DraftPanel::new(name, "body", &corners, &edges, [0.0, WAIST - 2.0, 20.0])
 }
 
-fn half_sleeve(name: &str, b: &Bodice) -> Panel {
+fn half_sleeve(name: &str, b: &Bodice) -> DraftPanel {
     let armhole = curve("", b.armpit, b.shoulder, &b.armhole).length(b.armpit, b.shoulder);
     // The cap is eased into the armhole by a hundredth.
-    let half = sleeve::Half {
+    let half = sleeve::HalfSleeve {
         under: 7.0,
         high: 12.0,
         cap: armhole * 1.01,
@@ -130,7 +130,7 @@ fn half_sleeve(name: &str, b: &Bodice) -> Panel {
     half.panel(name)
 }
 
-pub(super) fn dress() -> Garment {
+pub(super) fn dress() -> DraftGarment {
     let side = distance(BACK.waist, BACK.armpit);
     let mut panels = vec![
         bodice("front", &FRONT, Some(side)),
@@ -141,7 +141,7 @@ pub(super) fn dress() -> Garment {
     let front = half_sleeve("left_sleeve_front", &FRONT);
     let back = half_sleeve("", &BACK).behind("left_sleeve_back");
     panels.extend([front.mirrored("right_sleeve_front"), back.mirrored("right_sleeve_back"), front, back]);
-    let mut g = Garment { panels, stitches: Vec::new() };
+    let mut g = DraftGarment { panels, stitches: Vec::new() };
     for edge in ["shoulder_left", "shoulder_right", "side_left_low", "side_left_high"] {
         g.stitch("front", edge, "back", edge);
     }

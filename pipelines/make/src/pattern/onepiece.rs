@@ -4,29 +4,29 @@
 //! For the mannequin of 110 cm, bust 58, waist 54 and hip 60 cm: 66 cm at the bust, 70 cm at the
 //! hip.
 
-use super::{Garment, P, Panel, curve, line, sleeve};
+use super::{DraftGarment, DraftPanel, PlanePoint, curve, line, sleeve};
 
 /// A front or back on the wearer's left, x from the middle of the body, y from the floor.
-struct Piece {
+struct OnePieceHalf {
     /// The end of the crotch curve, and where it leaves the centre seam.
-    fork: P,
+    fork: PlanePoint,
     seat: f64,
     /// The inseam at the hem.
-    inner: P,
+    inner: PlanePoint,
     /// The centre seam at the neck.
     neck: f64,
     /// How far towards the shoulder the neckline stays level.
     round: f64,
     /// Controls of the armhole, from armpit to shoulder.
-    armhole: [P; 2],
+    armhole: [PlanePoint; 2],
 }
 
 /// Hem, hip, armpit, shoulder and neck at the shoulder, of front and back alike.
-const SIDE: [P; 3] = [[16.6, 31.0], [17.4, 48.0], [16.5, 74.0]];
-const SHOULDER: P = [12.0, 86.8];
-const NECK: P = [6.4, 89.6];
+const SIDE: [PlanePoint; 3] = [[16.6, 31.0], [17.4, 48.0], [16.5, 74.0]];
+const SHOULDER: PlanePoint = [12.0, 86.8];
+const NECK: PlanePoint = [6.4, 89.6];
 
-const FRONT: Piece = Piece {
+const FRONT: OnePieceHalf = OnePieceHalf {
     fork: [-3.5, 38.5],
     seat: 45.0,
     inner: [-1.5, 31.0],
@@ -34,7 +34,7 @@ const FRONT: Piece = Piece {
     round: 0.9,
     armhole: [[12.0, 74.0], [10.5, 80.0]],
 };
-const BACK: Piece = Piece {
+const BACK: OnePieceHalf = OnePieceHalf {
     fork: [-6.0, 38.5],
     seat: 46.5,
     inner: [-4.0, 31.0],
@@ -44,7 +44,7 @@ const BACK: Piece = Piece {
 };
 
 /// A left piece before the body.
-fn piece(name: &str, p: &Piece) -> Panel {
+fn piece(name: &str, p: &OnePieceHalf) -> DraftPanel {
     let [hem, hip, armpit] = SIDE;
     let (neck, seat) = ([0.0, p.neck], [0.0, p.seat]);
     let corners = [p.inner, hem, hip, armpit, SHOULDER, NECK, neck, seat, p.fork];
@@ -60,13 +60,13 @@ fn piece(name: &str, p: &Piece) -> Panel {
         curve("crotch", seat, p.fork, &[[0.0, p.fork[1]]]),
         line("inseam"),
     ];
-    Panel::new(name, "body", &corners, &edges, [4.0, 0.0, 13.0])
+    DraftPanel::new(name, "body", &corners, &edges, [4.0, 0.0, 13.0])
 }
 
-fn half_sleeve(name: &str, p: &Piece) -> Panel {
+fn half_sleeve(name: &str, p: &OnePieceHalf) -> DraftPanel {
     let armhole = curve("", SIDE[2], SHOULDER, &p.armhole).length(SIDE[2], SHOULDER);
     // The cap is eased into the armhole by a hundredth.
-    let half = sleeve::Half {
+    let half = sleeve::HalfSleeve {
         under: 4.5,
         high: 5.5,
         cap: armhole * 1.01,
@@ -78,7 +78,7 @@ fn half_sleeve(name: &str, p: &Piece) -> Panel {
     half.panel(name)
 }
 
-pub(super) fn onepiece() -> Garment {
+pub(super) fn onepiece() -> DraftGarment {
     let mut panels = Vec::new();
     let front = piece("left_front", &FRONT);
     let back = piece("", &BACK).behind("left_back");
@@ -86,7 +86,7 @@ pub(super) fn onepiece() -> Garment {
     let front = half_sleeve("left_sleeve_front", &FRONT);
     let back = half_sleeve("", &BACK).behind("left_sleeve_back");
     panels.extend([front.mirrored("right_sleeve_front"), back.mirrored("right_sleeve_back"), front, back]);
-    let mut g = Garment { panels, stitches: Vec::new() };
+    let mut g = DraftGarment { panels, stitches: Vec::new() };
     for side in ["left", "right"] {
         let [front, back] = ["front", "back"].map(|half| format!("{side}_{half}"));
         for edge in ["side_leg", "side", "shoulder", "inseam"] {

@@ -1,15 +1,15 @@
 //! A shirt with set-in sleeves, a stand collar and cuffs.
 
-use super::{Garment, P, Panel, bent, line};
+use super::{DraftGarment, DraftPanel, PlanePoint, bent, line};
 
 /// Degrees between the mannequin's arms and the vertical.
 const ARM: f64 = 60.0;
 /// The end of the sleeve on the arm's axis: x and y.
-const CUFF_END: P = [56.0, 112.0];
+const CUFF_END: PlanePoint = [56.0, 112.0];
 
 /// A shirt: front, back, sleeves in two halves each, a stand collar in two halves, cuffs in two
 /// halves each.
-pub(super) fn shirt() -> Garment {
+pub(super) fn shirt() -> DraftGarment {
     let (hem, armpit, shoulder, neck) = ([27.0, 0.0], [27.0, 33.5], [19.5, 57.4], [8.0, 61.6]);
     let torso = |name: &str, depth: f64, scoop: f64, z: f64| {
         let corners = [
@@ -33,7 +33,7 @@ pub(super) fn shirt() -> Garment {
             bent("armhole_right", 0.7, scoop),
             line("side_right"),
         ];
-        Panel::new(name, "body", &corners, &edges, [0.0, 85.0, z])
+        DraftPanel::new(name, "body", &corners, &edges, [0.0, 85.0, z])
     };
     let (front_scoop, back_scoop) = (0.16, 0.10);
     let front = torso("front", 9.0, front_scoop, 22.0);
@@ -45,18 +45,24 @@ pub(super) fn shirt() -> Garment {
         let cap = bend_for(armhole, high, low, 0.5);
         let corners = [[-7.0, 0.0], [7.0, 0.0], high, low];
         let edges = [line("wrist"), line("over_arm"), bent("cap", 0.5, -cap), line("under_arm")];
-        Panel { turn: ARM, ..Panel::new(name, "arm", &corners, &edges, [CUFF_END[0], CUFF_END[1], z]) }
+        DraftPanel {
+            turn: ARM,
+            ..DraftPanel::new(name, "arm", &corners, &edges, [CUFF_END[0], CUFF_END[1], z])
+        }
     };
     let cuff = |name: &str, z: f64| {
         let corners = [[-5.5, -6.0], [5.5, -6.0], [5.5, -1.0], [-5.5, -1.0]];
         let edges = [line("hem"), line("over_arm"), line("wrist"), line("under_arm")];
-        Panel { turn: ARM, ..Panel::new(name, "arm", &corners, &edges, [CUFF_END[0], CUFF_END[1], z]) }
+        DraftPanel {
+            turn: ARM,
+            ..DraftPanel::new(name, "arm", &corners, &edges, [CUFF_END[0], CUFF_END[1], z])
+        }
     };
     let collar = |name: &str, depth: f64, z: f64| {
         let half = bent("", 0.5, 2.0 * depth / (2.0 * neck[0])).length(neck, [-neck[0], neck[1]]) / 2.0;
         let corners = [[-half, 0.0], [half, 0.0], [half, 4.0], [-half, 4.0]];
         let edges = [line("neck"), line("end_left"), line("edge"), line("end_right")];
-        Panel::new(name, "body", &corners, &edges, [0.0, 148.0, z])
+        DraftPanel::new(name, "body", &corners, &edges, [0.0, 148.0, z])
     };
     let mut panels = vec![
         front,
@@ -73,7 +79,7 @@ pub(super) fn shirt() -> Garment {
         panels.extend([front, back]);
         panels.extend(others);
     }
-    let mut g = Garment { panels, stitches: Vec::new() };
+    let mut g = DraftGarment { panels, stitches: Vec::new() };
     for edge in ["shoulder_left", "shoulder_right", "side_left", "side_right"] {
         g.stitch("front", edge, "back", edge);
     }
@@ -97,7 +103,7 @@ pub(super) fn shirt() -> Garment {
 }
 
 /// How far a curve over that chord must bend to have that length; 0 where the chord is longer.
-fn bend_for(wanted: f64, from: P, to: P, along: f64) -> f64 {
+fn bend_for(wanted: f64, from: PlanePoint, to: PlanePoint, along: f64) -> f64 {
     let (mut low, mut high) = (0.0, 2.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;

@@ -2,23 +2,23 @@
 //!
 //! For the mannequin of 172 cm, waist 70 and hip 96 cm: 72 cm at the waist, 100 cm at the hip.
 
-use super::{Garment, P, Panel, curve, dart, distance, line};
+use super::{DraftGarment, DraftPanel, PlanePoint, curve, dart, distance, line};
 
 /// The height of the hem above the floor.
 const HEM: f64 = 9.0;
 /// Half of the waistband before and behind.
 const BAND: [f64; 2] = [18.5, 17.5];
 /// The side seam, at the hem, at the hip, above it and at the waist, from the middle of the body.
-const SIDE: [P; 4] = [[20.0, 0.0], [25.2, 76.0], [25.4, 86.0], [22.0, 98.5]];
+const SIDE: [PlanePoint; 4] = [[20.0, 0.0], [25.2, 76.0], [25.4, 86.0], [22.0, 98.5]];
 
 /// What sets the front of a leg apart from its back.
-struct Leg {
+struct TrouserLeg {
     /// The end of the crotch curve.
-    fork: P,
+    fork: PlanePoint,
     /// Where the crotch curve leaves the centre seam.
-    seat: P,
+    seat: PlanePoint,
     /// The centre seam at the waist.
-    centre: P,
+    centre: PlanePoint,
     /// The inseam at the hem.
     inner: f64,
     /// How deep the dart is; its width is what the waist is too wide.
@@ -26,9 +26,15 @@ struct Leg {
     band: f64,
 }
 
-const FRONT: Leg =
-    Leg { fork: [-5.5, 63.0], seat: [0.0, 71.0], centre: [1.0, 98.0], inner: -1.0, dart: 9.0, band: BAND[0] };
-const BACK: Leg = Leg {
+const FRONT: TrouserLeg = TrouserLeg {
+    fork: [-5.5, 63.0],
+    seat: [0.0, 71.0],
+    centre: [1.0, 98.0],
+    inner: -1.0,
+    dart: 9.0,
+    band: BAND[0],
+};
+const BACK: TrouserLeg = TrouserLeg {
     fork: [-10.5, 62.5],
     seat: [-0.5, 73.0],
     centre: [2.5, 100.5],
@@ -38,7 +44,7 @@ const BACK: Leg = Leg {
 };
 
 /// A left leg's panel before the body.
-fn leg(name: &str, leg: &Leg) -> Panel {
+fn leg(name: &str, leg: &TrouserLeg) -> DraftPanel {
     let [hem, hip, above, waist] = SIDE;
     let wide = distance(waist, leg.centre);
     let [outer, tip, inner] = dart(waist, leg.centre, wide / 2.0, wide - leg.band, leg.dart);
@@ -57,10 +63,10 @@ fn leg(name: &str, leg: &Leg) -> Panel {
         curve("fork", leg.seat, leg.fork, &[crotch]),
         line("inseam"),
     ];
-    Panel::new(name, "leg", &corners, &edges, [6.0, HEM, 20.0])
+    DraftPanel::new(name, "leg", &corners, &edges, [6.0, HEM, 20.0])
 }
 
-fn band(name: &str, half: f64) -> Panel {
+fn band(name: &str, half: f64) -> DraftPanel {
     let corners = [
         [-half, 0.0],
         [-half / 2.0, 0.0],
@@ -79,10 +85,10 @@ fn band(name: &str, half: f64) -> Panel {
         line("top"),
         line("end_right"),
     ];
-    Panel::new(name, "body", &corners, &edges, [0.0, HEM + 100.0, 18.0])
+    DraftPanel::new(name, "body", &corners, &edges, [0.0, HEM + 100.0, 18.0])
 }
 
-pub(super) fn trousers() -> Garment {
+pub(super) fn trousers() -> DraftGarment {
     let front = leg("left_front", &FRONT);
     let back = leg("", &BACK).behind("left_back");
     let panels = vec![
@@ -93,7 +99,7 @@ pub(super) fn trousers() -> Garment {
         band("band_front", BAND[0]),
         band("", BAND[1]).behind("band_back"),
     ];
-    let mut g = Garment { panels, stitches: Vec::new() };
+    let mut g = DraftGarment { panels, stitches: Vec::new() };
     for side in ["left", "right"] {
         let [front, back] = ["front", "back"].map(|half| format!("{side}_{half}"));
         for edge in ["side_leg", "side_hip", "inseam"] {

@@ -1,11 +1,11 @@
 //! The left arm and its hand: four fingers together, a little bent, and a thumb.
 
-use crate::limbs::limb::Limb;
-use crate::limbs::loft::{Loft, Section};
-use crate::limbs::spline::Spline;
+use crate::limbs::limb::BentTube;
+use crate::limbs::loft::{Loft, LoftSection};
+use crate::limbs::spline::KnotSpline;
 use crate::limbs::torso::girdle;
 use crate::measures::bounds::Bounds;
-use crate::shape::Shape;
+use crate::shape::FigureShape;
 use crate::skin::field::smooth_min;
 use toile_core::artifact::{Point3, Vector3};
 
@@ -13,7 +13,7 @@ use toile_core::artifact::{Point3, Vector3};
 const BEND: f64 = 12.0;
 
 /// Shoulder joint, elbow and wrist of the left arm: the axis, not the skin.
-pub(crate) fn axis(shape: &Shape) -> [Point3; 3] {
+pub(crate) fn axis(shape: &FigureShape) -> [Point3; 3] {
     let joint = girdle(shape).axis()[1] + Vector3::new(0.002, 0.006, 0.002) * shape.stature;
     let (sin, cos) = shape.size.arm_angle.sin_cos();
     let length = shape.aims.arm * shape.stature;
@@ -28,10 +28,10 @@ pub(crate) fn axis(shape: &Shape) -> [Point3; 3] {
 pub(crate) struct Arm {
     arm: Loft,
     palm: Loft,
-    fingers: Vec<Limb>,
+    fingers: Vec<BentTube>,
     /// Flesh between fingers, and between thumb and palm.
-    webs: Vec<Limb>,
-    thumb: Limb,
+    webs: Vec<BentTube>,
+    thumb: BentTube,
     /// The boxes around all and around the hand.
     bounds: [Bounds; 2],
     scale: f64,
@@ -40,7 +40,7 @@ pub(crate) struct Arm {
 }
 
 impl Arm {
-    pub(crate) fn new(shape: &Shape) -> Self {
+    pub(crate) fn new(shape: &FigureShape) -> Self {
         let axis = axis(shape);
         let arm = arm(shape, &axis);
         let hand = Hand::new(shape, &axis);
@@ -68,7 +68,7 @@ impl Arm {
 
     fn hand(&self, p: Point3) -> f64 {
         let k = self.scale;
-        let join = |v: f64, l: &Limb| l.joined(v, p, 0.006 * k);
+        let join = |v: f64, l: &BentTube| l.joined(v, p, 0.006 * k);
         let fingers = self.fingers.iter().chain(&self.webs).fold(f64::INFINITY, join);
         let hand = smooth_min(self.palm.value(p), fingers, 0.010 * k);
         smooth_min(hand, self.thumb.value(p), 0.016 * k)
@@ -81,7 +81,7 @@ impl Arm {
     }
 }
 
-fn arm(shape: &Shape, [joint, elbow, wrist]: &[Point3; 3]) -> Loft {
+fn arm(shape: &FigureShape, [joint, elbow, wrist]: &[Point3; 3]) -> Loft {
     let (r, whole) = (shape.arm_build(), (wrist - joint).norm());
     let unit = shape.aims.arm * shape.stature;
     let along = (wrist - joint).normalize();
@@ -103,8 +103,8 @@ fn arm(shape: &Shape, [joint, elbow, wrist]: &[Point3; 3]) -> Loft {
         (0.575, 0.0190, 0.0265, 0.0265),
     ];
     // The elbow lies before or behind the straight line.
-    let middle = Spline::new([(0.0, 0.0), (0.16, 0.42), (0.295, 1.0), (0.42, 0.5), (0.545, 0.0)]);
-    let knot = |&(l, side, ahead, behind): &(f64, f64, f64, f64)| -> (f64, Section) {
+    let middle = KnotSpline::new([(0.0, 0.0), (0.16, 0.42), (0.295, 1.0), (0.42, 0.5), (0.545, 0.0)]);
+    let knot = |&(l, side, ahead, behind): &(f64, f64, f64, f64)| -> (f64, LoftSection) {
         (l * unit, [0.0, bow * middle.at(l), side * r, ahead * r, behind * r])
     };
     let knots: Vec<_> = rows.iter().map(knot).collect();
@@ -124,7 +124,7 @@ struct Hand {
 }
 
 impl Hand {
-    fn new(shape: &Shape, axis: &[Point3; 3]) -> Self {
+    fn new(shape: &FigureShape, axis: &[Point3; 3]) -> Self {
         let along = (axis[2] - axis[1]).normalize();
         let out = (Vector3::z() - along * along.z).normalize();
         let scale = shape.stature * shape.form.hand;
@@ -150,7 +150,7 @@ impl Hand {
     }
 
     /// From the knuckles: where across the palm, how long, how thick.
-    fn fingers(&self) -> Vec<Limb> {
+    fn fingers(&self) -> Vec<BentTube> {
         let rows = [
             (0.0275, 0.070, 0.0095),
             (0.0095, 0.080, 0.0100),
@@ -161,16 +161,20 @@ impl Hand {
     }
 
     /// Between the fingers, thinner and shorter, and between thumb and palm.
-    fn webs(&self) -> Vec<Limb> {
+    fn webs(&self) -> Vec<BentTube> {
         let rows = [(0.0185, 0.066, 0.0084), (0.0, 0.073, 0.0084), (-0.018, 0.057, 0.0076)];
         let mut webs = rows.map(|(across, length, r)| self.finger(across, length, r)).to_vec();
         let k = self.scale;
         let axis = vec![self.at(0.045, 0.028, 0.006), self.at(0.100, 0.032, 0.008)];
-        webs.push(Limb::new(axis, Spline::new([(0.0, 0.012 * k), (0.055 * k, 0.0095 * k)]), [1.0, 1.0]));
+        webs.push(BentTube::new(
+            axis,
+            KnotSpline::new([(0.0, 0.012 * k), (0.055 * k, 0.0095 * k)]),
+            [1.0, 1.0],
+        ));
         webs
     }
 
-    fn finger(&self, across: f64, length: f64, radius: f64) -> Limb {
+    fn finger(&self, across: f64, length: f64, radius: f64) -> BentTube {
         let mut points = vec![(0.086, 0.0)];
         for (share, turn) in [(0.15, 4.0_f64), (0.30, 10.0), (0.30, 24.0), (0.25, 38.0)] {
             let (l, d) = points[points.len() - 1];
@@ -181,14 +185,14 @@ impl Hand {
         let axis = points.iter().map(|&(l, d)| self.at(l, gather(l), d)).collect();
         let k = self.scale;
         let radius = [(0.0, radius * 1.05), (0.5 * length, radius), (length, 0.78 * radius)];
-        Limb::new(axis, Spline::new(radius.map(|(l, r)| (l * k, r * k))), [1.0, 1.0])
+        BentTube::new(axis, KnotSpline::new(radius.map(|(l, r)| (l * k, r * k))), [1.0, 1.0])
     }
 
-    fn thumb(&self) -> Limb {
+    fn thumb(&self) -> BentTube {
         let k = self.scale;
         let axis =
             vec![self.at(0.022, 0.016, 0.006), self.at(0.058, 0.034, 0.014), self.at(0.100, 0.038, 0.017)];
         let radius = [(0.0, 0.0150), (0.045, 0.0130), (0.090, 0.0092)];
-        Limb::new(axis, Spline::new(radius.map(|(l, r)| (l * k, r * k))), [1.0, 1.0])
+        BentTube::new(axis, KnotSpline::new(radius.map(|(l, r)| (l * k, r * k))), [1.0, 1.0])
     }
 }

@@ -2,7 +2,7 @@
 //! [bumps](crate::limbs::relief).
 
 use crate::measures::bounds::Bounds;
-use crate::shape::Shape;
+use crate::shape::FigureShape;
 use crate::skin::field::{Ellipsoid, smooth_min};
 use toile_core::artifact::{Point3, Vector3};
 
@@ -14,7 +14,7 @@ pub(crate) struct Head {
 }
 
 impl Head {
-    pub(crate) fn new(shape: &Shape) -> Self {
+    pub(crate) fn new(shape: &FigureShape) -> Self {
         let (h, jaw) = (shape.head, shape.form.jaw);
         let part = |down: f64, z: f64, half: [f64; 3], joint: f64| {
             let half_axes = Vector3::from(half) * h;

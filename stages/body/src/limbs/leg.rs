@@ -1,8 +1,8 @@
 //! The left leg and its foot, which is cut flat at the ground.
 
-use crate::limbs::loft::{Loft, Section};
+use crate::limbs::loft::{Loft, LoftSection};
 use crate::measures::bounds::Bounds;
-use crate::shape::Shape;
+use crate::shape::FigureShape;
 use crate::skin::field::{smooth_max, smooth_min};
 use toile_core::artifact::{Point3, Vector3};
 
@@ -19,7 +19,7 @@ pub(crate) struct Leg {
 }
 
 /// Hip and ankle of the left leg.
-pub(crate) fn axis(shape: &Shape) -> [Point3; 2] {
+pub(crate) fn axis(shape: &FigureShape) -> [Point3; 2] {
     let [hip, ankle] = shape.leg_out();
     [
         Point3::new(hip, shape.y(0.575), -0.002 * shape.hip()),
@@ -28,7 +28,7 @@ pub(crate) fn axis(shape: &Shape) -> [Point3; 2] {
 }
 
 impl Leg {
-    pub(crate) fn new(shape: &Shape) -> Self {
+    pub(crate) fn new(shape: &FigureShape) -> Self {
         let (leg, foot) = (leg(shape), foot(shape));
         let bounds = Bounds::of([leg.bounds().lo, leg.bounds().hi, foot.bounds().lo, foot.bounds().hi]);
         Leg { leg, foot, bounds, stature: shape.stature }
@@ -51,7 +51,7 @@ impl Leg {
     }
 }
 
-fn leg(shape: &Shape) -> Loft {
+fn leg(shape: &FigureShape) -> Loft {
     let axis = axis(shape);
     let (s, hip) = (shape.stature, shape.hip());
     let (thigh, shin) = (hip * shape.width_of_hip(), shape.build(hip));
@@ -73,7 +73,7 @@ fn leg(shape: &Shape) -> Loft {
         (0.020, 0.0, 0.006, 0.0300, 0.036, 0.031),
     ];
     let cosine = (axis[0].y - axis[1].y) / (axis[1] - axis[0]).norm();
-    let knot = |&(l, u, w, half, ahead, behind): &(f64, f64, f64, f64, f64, f64)| -> (f64, Section) {
+    let knot = |&(l, u, w, half, ahead, behind): &(f64, f64, f64, f64, f64, f64)| -> (f64, LoftSection) {
         let r = shin + (thigh - shin) * ((l - 0.33) / 0.12).clamp(0.0, 1.0);
         ((axis[0].y - shape.y(l)) / cosine, [u * s, w * s, half * r, ahead * r, behind * r])
     };
@@ -83,7 +83,7 @@ fn leg(shape: &Shape) -> Loft {
 }
 
 /// From heel to toes; the sections' front is up.
-fn foot(shape: &Shape) -> Loft {
+fn foot(shape: &FigureShape) -> Loft {
     let k = shape.stature * shape.form.foot;
     let ankle = axis(shape)[1];
     let (sin, cos) = TURNED.to_radians().sin_cos();

@@ -1,9 +1,9 @@
 //! Limbs: tubes of varying radius around a bent axis.
 //!
 //! Cost: a square root and a cubic for each stretch of the axis that may be the nearest, or a few
-//! comparisons where the whole limb is too far away to matter ([`Limb::joined`]).
+//! comparisons where the whole limb is too far away to matter ([`BentTube::joined`]).
 
-use crate::limbs::spline::Spline;
+use crate::limbs::spline::KnotSpline;
 use crate::skin::field::smooth_min;
 use toile_core::artifact::{Point3, Vector3};
 
@@ -12,12 +12,12 @@ const ROUNDING: f64 = 1e-9;
 
 /// A tube of varying radius around a bent axis.
 #[derive(Debug, Clone)]
-pub(crate) struct Limb {
+pub(crate) struct BentTube {
     axis: Vec<Point3>,
-    radius: Spline,
+    radius: KnotSpline,
     /// Stretch of the section along x and z: 1 is a circle.
     stretch: [f64; 2],
-    segments: Vec<Segment>,
+    segments: Vec<AxisSegment>,
     /// The box around the squeezed axis: its middle and half its sides.
     around: (Point3, Vector3),
     widest: f64,
@@ -25,7 +25,7 @@ pub(crate) struct Limb {
 
 /// A straight stretch of the axis in the space in which sections are circles.
 #[derive(Debug, Clone)]
-struct Segment {
+struct AxisSegment {
     from: Point3,
     way: Vector3,
     squared: f64,
@@ -34,15 +34,15 @@ struct Segment {
     length: f64,
 }
 
-impl Limb {
+impl BentTube {
     /// Of an axis' points, the radius over the length along it, metres, and the stretch of its
     /// sections along x and z.
-    pub(crate) fn new(axis: Vec<Point3>, radius: Spline, stretch: [f64; 2]) -> Self {
+    pub(crate) fn new(axis: Vec<Point3>, radius: KnotSpline, stretch: [f64; 2]) -> Self {
         let squeezed: Vec<Point3> = axis.iter().map(|&p| squeeze(p, stretch)).collect();
         let mut start = 0.0;
         let segment = |(w, s): (&[Point3], &[Point3])| {
             let (way, length) = (s[1] - s[0], (w[1] - w[0]).norm());
-            let segment = Segment { from: s[0], way, squared: way.norm_squared(), start, length };
+            let segment = AxisSegment { from: s[0], way, squared: way.norm_squared(), start, length };
             start += length;
             segment
         };
@@ -50,7 +50,7 @@ impl Limb {
         let lo = squeezed.iter().fold(Point3::from([f64::INFINITY; 3]), |l, p| l.inf(p));
         let hi = squeezed.iter().fold(Point3::from([f64::NEG_INFINITY; 3]), |h, p| h.sup(p));
         let widest = radius.greatest();
-        Limb {
+        BentTube {
             axis,
             radius,
             stretch,
@@ -105,15 +105,15 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn limb() -> Limb {
+    fn limb() -> BentTube {
         let axis = vec![Point3::origin(), Point3::new(0.1, 1.0, 0.0), Point3::new(0.3, 1.4, 0.5)];
-        Limb::new(axis, Spline::new([(0.0, 0.1), (0.8, 0.2), (1.6, 0.05)]), [0.75, 1.3])
+        BentTube::new(axis, KnotSpline::new([(0.0, 0.1), (0.8, 0.2), (1.6, 0.05)]), [0.75, 1.3])
     }
 
     #[test]
     fn a_straight_limb_of_even_radius_is_a_capsule() {
         let axis = vec![Point3::origin(), Point3::new(0.0, 1.0, 0.0)];
-        let limb = Limb::new(axis, Spline::new([(0.0, 0.1), (1.0, 0.1)]), [1.0, 1.0]);
+        let limb = BentTube::new(axis, KnotSpline::new([(0.0, 0.1), (1.0, 0.1)]), [1.0, 1.0]);
         assert!((limb.value(Point3::new(0.3, 0.5, 0.0)) - 0.2).abs() < 1e-12);
         assert!((limb.value(Point3::new(0.0, 1.5, 0.0)) - 0.4).abs() < 1e-12);
     }

@@ -6,14 +6,14 @@
 //! Cost: one look-up of the sections and some tens of products. Limit: the value is the distance to
 //! first order only.
 
-use crate::limbs::profile::Profile;
+use crate::limbs::profile::LengthProfile;
 use crate::measures::bounds::Bounds;
 use crate::skin::field::smooth_max;
 use toile_core::artifact::{Point3, Vector3};
 
 /// A section: the middle's place to the side and in front of the line, half the width, depth in
 /// front and behind.
-pub(crate) type Section = [f64; 5];
+pub(crate) type LoftSection = [f64; 5];
 
 /// A stack of sections.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub(crate) struct Loft {
     side: Vector3,
     along: Vector3,
     front: Vector3,
-    sections: Profile<5>,
+    sections: LengthProfile<5>,
     span: [f64; 2],
     rounding: f64,
     boxy: bool,
@@ -35,14 +35,14 @@ impl Loft {
     pub(crate) fn new(
         [origin, end]: [Point3; 2],
         front: Vector3,
-        knots: &[(f64, Section)],
+        knots: &[(f64, LoftSection)],
         span: [f64; 2],
         rounding: f64,
     ) -> Self {
         let along = (end - origin).normalize();
         let front = (front - along * front.dot(&along)).normalize();
         let side = along.cross(&front);
-        let sections = Profile::new(knots);
+        let sections = LengthProfile::new(knots);
         let corners = sections.samples().flat_map(|(s, [u, w, half, ahead, behind])| {
             let middle = origin + along * s + side * *u + front * *w;
             [side * *half, side * -half, front * *ahead, front * -behind].map(|r| middle + r)

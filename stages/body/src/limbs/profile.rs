@@ -7,7 +7,7 @@
 //! Cost: sixteen products a channel and look-up. Limit: a knot's value is met to the width of two
 //! samples only.
 
-use crate::limbs::spline::Spline;
+use crate::limbs::spline::KnotSpline;
 
 /// Samples between the first knot and the last.
 const SAMPLES: usize = 44;
@@ -16,13 +16,13 @@ const ROUNDS: usize = 2;
 
 /// Values over a length, constant outside of their knots.
 #[derive(Debug, Clone)]
-pub(crate) struct Profile<const N: usize> {
+pub(crate) struct LengthProfile<const N: usize> {
     start: f64,
     step: f64,
     values: Vec<[f64; N]>,
 }
 
-impl<const N: usize> Profile<N> {
+impl<const N: usize> LengthProfile<N> {
     /// Through `(length, values)` knots of strictly rising length.
     pub(crate) fn new(knots: &[(f64, [f64; N])]) -> Self {
         let (start, end) = match knots {
@@ -30,12 +30,12 @@ impl<const N: usize> Profile<N> {
             _ => (0.0, 1.0),
         };
         let step = (end - start) / (SAMPLES - 1) as f64;
-        let channels: [Spline; N] =
-            std::array::from_fn(|c| Spline::new(knots.iter().map(|(x, v)| (*x, v[c]))));
+        let channels: [KnotSpline; N] =
+            std::array::from_fn(|c| KnotSpline::new(knots.iter().map(|(x, v)| (*x, v[c]))));
         let sample = |k: usize| std::array::from_fn(|c| channels[c].at(start + step * k as f64));
         let mut values: Vec<[f64; N]> = (0..SAMPLES).map(sample).collect();
         (0..ROUNDS).for_each(|_| values = smoothed(&values));
-        Profile { start, step, values }
+        LengthProfile { start, step, values }
     }
 
     /// The values at a length.
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_constant_stays_and_a_slope_is_kept_inside() {
-        let p = Profile::new(&[(0.0, [2.0, 0.0]), (1.0, [2.0, 0.5]), (2.0, [2.0, 1.0])]);
+        let p = LengthProfile::new(&[(0.0, [2.0, 0.0]), (1.0, [2.0, 0.5]), (2.0, [2.0, 1.0])]);
         for x in [-1.0, 0.3, 1.0, 1.7, 5.0] {
             assert!((p.at(x)[0] - 2.0).abs() < 1e-12);
         }

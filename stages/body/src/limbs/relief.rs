@@ -1,12 +1,12 @@
 //! The relief of the skin: bones, muscles and hollows as [bumps](crate::limbs::bump).
 
 use crate::limbs::bump::Bump;
-use crate::shape::{Shape, level};
+use crate::shape::{FigureShape, level};
 use crate::{limbs::arm, limbs::leg};
 use toile_core::artifact::{Point3, Vector3};
 
 /// All bumps of a figure's left half and its middle.
-pub(crate) fn relief(shape: &Shape) -> Vec<Bump> {
+pub(crate) fn relief(shape: &FigureShape) -> Vec<Bump> {
     let mut bumps = torso(shape);
     bumps.extend(head(shape));
     bumps.extend(limbs(shape));
@@ -14,12 +14,12 @@ pub(crate) fn relief(shape: &Shape) -> Vec<Bump> {
 }
 
 /// Ends as (side, level, front), metres on the adult; radii and height likewise.
-type Row = ([f64; 3], [f64; 3], [f64; 3], f64);
+type BumpRow = ([f64; 3], [f64; 3], [f64; 3], f64);
 
-fn torso(shape: &Shape) -> Vec<Bump> {
+fn torso(shape: &FigureShape) -> Vec<Bump> {
     let (bones, form) = (shape.form.relief, shape.form);
     let half = 0.193;
-    let rows: [Row; 11] = [
+    let rows: [BumpRow; 11] = [
         // Collarbones, the hollows above them, the notch between.
         ([0.030, 0.941, 0.05], [0.82 * half, 0.948, 0.03], [0.030, 0.019, 0.06], 0.0065 * bones),
         ([0.070, 0.964, 0.04], [0.105, 0.960, 0.03], [0.040, 0.026, 0.050], -0.006 * bones),
@@ -41,7 +41,7 @@ fn torso(shape: &Shape) -> Vec<Bump> {
 }
 
 /// Widths and depths go with the trunk's girth at the level.
-fn on_trunk(shape: &Shape, (from, to, radii, height): &Row) -> Bump {
+fn on_trunk(shape: &FigureShape, (from, to, radii, height): &BumpRow) -> Bump {
     let [hip, waist, bust] = shape.aims.trunk;
     let scale = |l: f64| {
         let along = (l - level::HIP) / (level::WAIST - level::HIP);
@@ -55,9 +55,9 @@ fn on_trunk(shape: &Shape, (from, to, radii, height): &Row) -> Bump {
     Bump::new([at(from), at(to)], radii, height * shape.stature)
 }
 
-fn head(shape: &Shape) -> Vec<Bump> {
+fn head(shape: &FigureShape) -> Vec<Bump> {
     let h = shape.head;
-    let rows: [Row; 5] = [
+    let rows: [BumpRow; 5] = [
         // The nose's ridge and tip, the hollows of the eyes, the brows.
         ([0.0, 0.112, 0.086], [0.0, 0.146, 0.094], [0.019, 0.026, 0.038], 0.012),
         ([0.0, 0.144, 0.098], [0.0, 0.147, 0.098], [0.022, 0.020, 0.034], 0.006),
@@ -66,14 +66,14 @@ fn head(shape: &Shape) -> Vec<Bump> {
         ([0.042, 0.142, 0.070], [0.050, 0.136, 0.055], [0.030, 0.028, 0.040], 0.003),
         ([0.0, 0.174, 0.086], [0.010, 0.174, 0.084], [0.026, 0.018, 0.035], 0.0012),
     ];
-    let bump = |(from, to, radii, height): &Row| {
+    let bump = |(from, to, radii, height): &BumpRow| {
         let at = |p: &[f64; 3]| shape.of_head(p[0], p[1], p[2]);
         Bump::new([at(from), at(to)], radii.map(|r| r * h), height * h)
     };
     rows.iter().map(bump).collect()
 }
 
-fn limbs(shape: &Shape) -> Vec<Bump> {
+fn limbs(shape: &FigureShape) -> Vec<Bump> {
     let (s, r) = (shape.stature, shape.build(shape.hip()));
     let bones = shape.form.relief.max(0.7) * s;
     let [_, elbow, _] = arm::axis(shape);

@@ -5,20 +5,20 @@
 
 /// A smooth curve through knots, constant outside of them.
 #[derive(Debug, Clone)]
-pub(crate) struct Spline {
+pub(crate) struct KnotSpline {
     x: Vec<f64>,
     y: Vec<f64>,
     slope: Vec<f64>,
 }
 
-impl Spline {
+impl KnotSpline {
     /// A curve through `(x, y)` knots with strictly rising `x`.
     pub(crate) fn new(knots: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (x, y): (Vec<f64>, Vec<f64>) = knots.into_iter().unzip();
         let secants: Vec<f64> =
             x.windows(2).zip(y.windows(2)).map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0])).collect();
         let slope = (0..x.len()).map(|i| knot_slope(&x, &secants, i)).collect();
-        Spline { x, y, slope }
+        KnotSpline { x, y, slope }
     }
 
     /// The greatest value: that of a knot, for it never overshoots.
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn passes_through_its_knots_and_is_constant_beyond() {
-        let s = Spline::new([(0.0, 1.0), (1.0, 3.0), (3.0, 2.0)]);
+        let s = KnotSpline::new([(0.0, 1.0), (1.0, 3.0), (3.0, 2.0)]);
         for (x, y) in [(-5.0, 1.0), (0.0, 1.0), (1.0, 3.0), (3.0, 2.0), (9.0, 2.0)] {
             assert!((s.at(x) - y).abs() < 1e-12, "{x}: {}", s.at(x));
         }
@@ -68,7 +68,7 @@ mod tests {
     proptest! {
         #[test]
         fn never_overshoots(ys in prop::collection::vec(-2.0..2.0f64, 2..8), t in 0.0..1.0f64) {
-            let s = Spline::new(ys.iter().enumerate().map(|(i, &y)| (i as f64, y)));
+            let s = KnotSpline::new(ys.iter().enumerate().map(|(i, &y)| (i as f64, y)));
             let x = t * (ys.len() - 1) as f64;
             let i = (x as usize).min(ys.len() - 2);
             let (lo, hi) = (ys[i].min(ys[i + 1]), ys[i].max(ys[i + 1]));

@@ -29,10 +29,10 @@ const LEAST: f64 = 0.15;
 
 /// The swing of both arms; none of one that stays.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Swing([Option<Side>; 2]);
+pub struct Swing([Option<SwingSide>; 2]);
 
 #[derive(Debug, Clone, PartialEq)]
-struct Side {
+struct SwingSide {
     /// The axis passes through here.
     joint: Point3,
     /// 1 for the left arm, which is at +X, and -1 for the right one.
@@ -49,7 +49,7 @@ impl Swing {
     /// Errors: a landmark of an arm is missing; there is no room between arm and trunk, or not so
     /// much of it.
     pub fn to(body: &Body, angle: f64) -> Result<Swing, StageError> {
-        let side = |name| Side::new(name, Arm::of(body, name)?, angle).map(Some);
+        let side = |name| SwingSide::new(name, ArmAngles::of(body, name)?, angle).map(Some);
         Ok(Swing([side("left")?, side("right")?]))
     }
 
@@ -59,9 +59,9 @@ impl Swing {
     /// Errors: a landmark of an arm is missing.
     pub fn hanging(body: &Body) -> Result<Swing, StageError> {
         let side = |name| {
-            let arm = Arm::of(body, name)?;
+            let arm = ArmAngles::of(body, name)?;
             let to = HANGING.max(arm.least());
-            if to < arm.from { Side::new(name, arm, to).map(Some) } else { Ok(None) }
+            if to < arm.from { SwingSide::new(name, arm, to).map(Some) } else { Ok(None) }
         };
         Ok(Swing([side("left")?, side("right")?]))
     }
@@ -71,14 +71,14 @@ impl Swing {
     /// Errors: those of [`Swing::to`]; the elbows are not as far from the shoulders as before.
     pub fn between(before: &Body, after: &Body) -> Result<Swing, StageError> {
         let side = |name| {
-            let arm = Arm::of(before, name)?;
+            let arm = ArmAngles::of(before, name)?;
             let [r, to] = arm.joint.polar(&mark(after, "elbow", name)?);
             let [before_r, _] = arm.joint.polar(&mark(before, "elbow", name)?);
             if (r - before_r).abs() > SAME {
                 return Err(StageError::invalid("the two bodies are not one body in two poses")
                     .hint("let `PoseBody` take the body that the garment was draped on"));
             }
-            if (to - arm.from).abs() < 1e-12 { Ok(None) } else { Side::new(name, arm, to).map(Some) }
+            if (to - arm.from).abs() < 1e-12 { Ok(None) } else { SwingSide::new(name, arm, to).map(Some) }
         };
         Ok(Swing([side("left")?, side("right")?]))
     }
@@ -90,15 +90,15 @@ impl Swing {
 }
 
 /// The middle of a shoulder, from which angles are taken.
-struct Joint {
+struct ShoulderJoint {
     at: Point3,
     outward: f64,
 }
 
-impl Joint {
-    fn of(body: &Body, side: &str) -> Result<Joint, StageError> {
+impl ShoulderJoint {
+    fn of(body: &Body, side: &str) -> Result<ShoulderJoint, StageError> {
         let at = nalgebra::center(&mark(body, "shoulder", side)?, &mark(body, "armpit", side)?);
-        Ok(Joint { at, outward: if side == "left" { 1.0 } else { -1.0 } })
+        Ok(ShoulderJoint { at, outward: if side == "left" { 1.0 } else { -1.0 } })
     }
 
     /// Distance from the axis, and the angle from the downward vertical outwards, from -90 to 270
@@ -111,20 +111,20 @@ impl Joint {
 }
 
 /// An arm as it is.
-struct Arm {
-    joint: Joint,
+struct ArmAngles {
+    joint: ShoulderJoint,
     /// The angle of the elbow.
     from: f64,
     /// The largest angle of the trunk.
     trunk: f64,
 }
 
-impl Arm {
-    fn of(body: &Body, side: &str) -> Result<Arm, StageError> {
-        let joint = Joint::of(body, side)?;
+impl ArmAngles {
+    fn of(body: &Body, side: &str) -> Result<ArmAngles, StageError> {
+        let joint = ShoulderJoint::of(body, side)?;
         let from = joint.polar(&mark(body, "elbow", side)?)[1];
         let trunk = trunk_end(body, &joint, mark(body, "armpit", side)?);
-        Ok(Arm { joint, from, trunk })
+        Ok(ArmAngles { joint, from, trunk })
     }
 
     /// The least angle that the arm can be brought to; its own where there is no room between it
@@ -135,8 +135,8 @@ impl Arm {
     }
 }
 
-impl Side {
-    fn new(side: &str, arm: Arm, to: f64) -> Result<Side, StageError> {
+impl SwingSide {
+    fn new(side: &str, arm: ArmAngles, to: f64) -> Result<SwingSide, StageError> {
         let refused = |what: &str| {
             let text = format!("at {:.0} degrees the {side} arm does not clear the {what}", to.to_degrees());
             StageError::invalid(text).at("arm_angle")
@@ -155,13 +155,13 @@ impl Side {
         if to + ARM >= NECK {
             return Err(refused("head"));
         }
-        let Arm { joint, from, trunk } = arm;
+        let ArmAngles { joint, from, trunk } = arm;
         let knots = [[trunk; 2], [from - ARM, to - ARM], [from + ARM, to + ARM], [NECK; 2]];
-        Ok(Side { joint: joint.at, outward: joint.outward, slopes: slopes(&knots), knots })
+        Ok(SwingSide { joint: joint.at, outward: joint.outward, slopes: slopes(&knots), knots })
     }
 
     fn place(&self, p: &Point3) -> Point3 {
-        let joint = Joint { at: self.joint, outward: self.outward };
+        let joint = ShoulderJoint { at: self.joint, outward: self.outward };
         let [r, angle] = joint.polar(p);
         if angle <= self.knots[0][0] || angle >= self.knots[3][0] {
             return *p;
@@ -199,7 +199,7 @@ fn slopes(knots: &[[f64; 2]; 4]) -> [f64; 4] {
 }
 
 /// The largest angle at which the trunk lies between armpit and crotch.
-fn trunk_end(body: &Body, joint: &Joint, armpit: Point3) -> f64 {
+fn trunk_end(body: &Body, joint: &ShoulderJoint, armpit: Point3) -> f64 {
     let low = body.landmarks.get("crotch").map_or(armpit.y / 2.0, |p| p.y);
     let height = armpit.y - low;
     let slices = (1..=SLICES).map(|k| armpit.y - height * f64::from(k) / f64::from(SLICES));
@@ -234,13 +234,13 @@ mod tests {
 
     /// Angle of an upper arm against the vertical, degrees.
     fn angle(body: &Body) -> f64 {
-        Joint::of(body, "left").unwrap().polar(&body.landmarks["elbow_left"])[1].to_degrees()
+        ShoulderJoint::of(body, "left").unwrap().polar(&body.landmarks["elbow_left"])[1].to_degrees()
     }
 
     #[test]
     fn arms_come_to_the_angle_and_the_trunk_stays() {
         let body = mannequin();
-        let joint = Joint::of(&body, "left").unwrap();
+        let joint = ShoulderJoint::of(&body, "left").unwrap();
         let swing = Swing::to(&body, 25.0_f64.to_radians()).unwrap();
         let elbow = swing.place(&body.landmarks["elbow_left"]);
         assert!((joint.polar(&elbow)[1].to_degrees() - 25.0).abs() < 1e-9);
@@ -303,7 +303,7 @@ mod tests {
         fn angles_keep_their_order(to in 20.0..160.0_f64, a in -80.0..260.0_f64, step in 0.01..10.0_f64) {
             let body = BODY.with(Clone::clone);
             let swing = Swing::to(&body, to.to_radians()).unwrap();
-            let joint = Joint::of(&body, "left").unwrap();
+            let joint = ShoulderJoint::of(&body, "left").unwrap();
             let at = |degrees: f64| {
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 let p = Point3::new(joint.at.x + 0.3 * sin, joint.at.y - 0.3 * cos, 0.0);
@@ -317,11 +317,11 @@ mod tests {
     fn arms_hang_as_low_as_the_trunk_lets_them() {
         let hung = |body: &Body| {
             let elbow = Swing::hanging(body).unwrap().place(&body.landmarks["elbow_left"]);
-            Joint::of(body, "left").unwrap().polar(&elbow)[1].to_degrees()
+            ShoulderJoint::of(body, "left").unwrap().polar(&elbow)[1].to_degrees()
         };
         assert!((hung(&mannequin()) - 28.0).abs() < 1e-6);
         let wide = Mannequin::made(1.7, [1.2, 1.28, 1.35], 70.0, 0.016).run(&Context::quiet()).unwrap();
-        let least = Arm::of(&wide, "left").unwrap().least().to_degrees();
+        let least = ArmAngles::of(&wide, "left").unwrap().least().to_degrees();
         assert!((hung(&wide) - least.max(28.0)).abs() < 1e-6, "{least} {}", hung(&wide));
         assert!(Swing::to(&wide, (least + 0.1).to_radians()).is_ok());
         assert!(Swing::to(&wide, (least - 0.1).to_radians()).is_err());

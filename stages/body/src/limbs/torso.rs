@@ -1,11 +1,11 @@
 //! Trunk, breasts, seat, shoulder line and neck.
 
-use crate::form::Row;
-use crate::limbs::limb::Limb;
-use crate::limbs::loft::{Loft, Section};
-use crate::limbs::spline::Spline;
+use crate::form::TrunkRow;
+use crate::limbs::limb::BentTube;
+use crate::limbs::loft::{Loft, LoftSection};
+use crate::limbs::spline::KnotSpline;
 use crate::measures::bounds::Bounds;
-use crate::shape::{ADULT, ADULT_CHIN, Shape, level};
+use crate::shape::{ADULT, ADULT_CHIN, FigureShape, level};
 use crate::skin::field::{Ellipsoid, smooth_min};
 use toile_core::artifact::{Point3, Vector3};
 
@@ -18,14 +18,14 @@ pub(crate) struct Torso {
     trunk: Loft,
     breasts: Vec<Ellipsoid>,
     seat: Ellipsoid,
-    girdle: Limb,
+    girdle: BentTube,
     neck: Loft,
     bounds: Bounds,
     stature: f64,
 }
 
 impl Torso {
-    pub(crate) fn new(shape: &Shape) -> Self {
+    pub(crate) fn new(shape: &FigureShape) -> Self {
         let trunk = trunk(shape);
         let bounds = *trunk.bounds();
         Torso {
@@ -61,24 +61,24 @@ impl Torso {
     }
 }
 
-fn trunk(shape: &Shape) -> Loft {
+fn trunk(shape: &FigureShape) -> Loft {
     let [hip, waist, bust] = shape.aims.trunk;
     let levels = [(level::CROTCH, hip), (level::HIP, hip), (level::WAIST, waist), (level::BUST, bust)];
     let shoulders = shape.size.shoulder_width / ADULT.shoulder_width;
     let top = 0.945;
-    let depth = Spline::new(levels.into_iter().chain([(top, shape.build(bust))]));
-    let width = Spline::new(levels.into_iter().chain([(top, shoulders)]));
-    let section = |r: &Row| -> (f64, Section) {
+    let depth = KnotSpline::new(levels.into_iter().chain([(top, shape.build(bust))]));
+    let width = KnotSpline::new(levels.into_iter().chain([(top, shoulders)]));
+    let section = |r: &TrunkRow| -> (f64, LoftSection) {
         let d = depth.at(r[0]);
         (shape.y(r[0]), [0.0, 0.0, r[1] * width.at(r[0]), r[2] * d, r[3] * d])
     };
-    let knots: Vec<(f64, Section)> = shape.form.trunk.iter().map(section).collect();
+    let knots: Vec<(f64, LoftSection)> = shape.form.trunk.iter().map(section).collect();
     let ends = [Point3::origin(), Point3::new(0.0, 1.0, 0.0)];
     Loft::new(ends, Vector3::z(), &knots, SPAN.map(|l| shape.y(l)), 0.05 * shape.stature).boxy()
 }
 
 /// A fuller lower and a flatter upper half; breasts grow with the difference of bust and waist.
-fn breasts(shape: &Shape) -> Vec<Ellipsoid> {
+fn breasts(shape: &FigureShape) -> Vec<Ellipsoid> {
     let ratio = shape.size.bust / shape.size.waist;
     let fullness = shape.form.breast * ((ratio - 1.0) / 0.24).clamp(0.35, 1.25);
     if shape.form.breast <= 0.0 {
@@ -101,7 +101,7 @@ fn breasts(shape: &Shape) -> Vec<Ellipsoid> {
 }
 
 /// The fullness of the seat behind.
-fn seat(shape: &Shape) -> Ellipsoid {
+fn seat(shape: &FigureShape) -> Ellipsoid {
     let (hip, k) = (shape.hip(), shape.form.seat);
     Ellipsoid {
         centre: Point3::new(0.074 * hip, shape.y(0.578), (-0.056 - 0.008 * (k - 0.9)) * hip),
@@ -112,7 +112,7 @@ fn seat(shape: &Shape) -> Ellipsoid {
 /// The shoulder line: from the neck down to the shoulder joint. The skin over it slopes by some 24
 /// degrees from the neck to the shoulder point, as is usual (Taniyama and others 1970: 22 to 24;
 /// mean body of GarmentCode: 22).
-pub(crate) fn girdle(shape: &Shape) -> Limb {
+pub(crate) fn girdle(shape: &FigureShape) -> BentTube {
     let s = shape.stature;
     let [inner, outer] = [0.047 * s, 0.046 * shape.arm_build()];
     let half = shape.size.shoulder_width / 2.0;
@@ -122,16 +122,16 @@ pub(crate) fn girdle(shape: &Shape) -> Limb {
     let drop = (joint.x - neck.x) * slope.tan();
     let joint = Point3::new(joint.x, neck.y - drop + (inner - outer) / slope.cos(), joint.z);
     let length = (joint - neck).norm();
-    Limb::new(vec![neck, joint], Spline::new([(0.0, inner), (length, outer)]), [1.0, 1.2])
+    BentTube::new(vec![neck, joint], KnotSpline::new([(0.0, inner), (length, outer)]), [1.0, 1.2])
 }
 
 /// The neck's axis: it leans forward.
-pub(crate) fn neck_axis(shape: &Shape) -> [Point3; 2] {
+pub(crate) fn neck_axis(shape: &FigureShape) -> [Point3; 2] {
     let s = shape.stature;
     [Point3::new(0.0, shape.y(0.93), -0.040 * s), Point3::new(0.0, shape.chin * 1.03, -0.001 * s)]
 }
 
-fn neck(shape: &Shape) -> Loft {
+fn neck(shape: &FigureShape) -> Loft {
     let (r, axis) = (shape.aims.neck, neck_axis(shape));
     let length = (axis[1] - axis[0]).norm();
     let knot = |share: f64, k: f64| (share * length, [0.0, 0.0, 0.97 * k * r, 1.0 * k * r, 1.04 * k * r]);
@@ -140,7 +140,7 @@ fn neck(shape: &Shape) -> Loft {
 }
 
 /// The middle of the neck where its girth is taken, and the direction of its axis.
-pub(crate) fn neck_middle(shape: &Shape) -> (Point3, Vector3) {
+pub(crate) fn neck_middle(shape: &FigureShape) -> (Point3, Vector3) {
     let [from, to] = neck_axis(shape);
     let y = level::NECK_GIRTH * ADULT_CHIN * shape.stature;
     (from + (to - from) * ((y - from.y) / (to.y - from.y)), (to - from).normalize())

@@ -21,7 +21,7 @@ const ARM_SHARES: [(&str, f64); 2] = [("elbow", 0.42), ("wrist", 0.755)];
 const RIDGE_SLOPE: f64 = 0.62;
 
 /// Landmarks and girths by their names.
-type Found = (BTreeMap<String, Landmark>, BTreeMap<String, f64>);
+type FoundMeasures = (BTreeMap<String, Landmark>, BTreeMap<String, f64>);
 
 /// Landmarks and girths of a body with its feet at 0 and its middle at x = 0; or the part that was
 /// not found.
@@ -29,7 +29,7 @@ pub(crate) fn estimate(
     positions: &[Point3],
     triangles: &[[u32; 3]],
     height: f64,
-) -> Result<Found, &'static str> {
+) -> Result<FoundMeasures, &'static str> {
     let survey = Survey::take(positions, triangles, height);
     let crotch = survey.crotch().ok_or("crotch")?;
     let armpit = survey.armpit().ok_or("armpits")?;

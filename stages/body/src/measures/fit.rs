@@ -4,14 +4,14 @@
 //! meshed once and measured by tape. Where the mesh misses by more than [`TOLERANCE`], what is
 //! wanted of the solid is corrected and it is meshed again.
 
-use crate::figure::Figure;
-use crate::form::Form;
+use crate::figure::BodyFigure;
+use crate::form::BodyForm;
 use crate::measures::landmarks::landmarks;
 use crate::measures::measure::{Six, limbs, meshed, smooth, wanted};
-use crate::shape::{Aims, Size};
-use crate::skin::isosurface::{Grid, mesh};
-use crate::skin::topology::Topology;
-use crate::skin::topology::TriMesh;
+use crate::shape::{Aims, FigureSize};
+use crate::skin::isosurface::{CellGrid, mesh};
+use crate::skin::topology::MeshTopology;
+use crate::skin::topology::SkinMesh;
 use toile_core::prelude::*;
 
 /// The mesh's measures agree to this length, metres, and to this share.
@@ -32,7 +32,7 @@ const LARGEST_EDGE: f64 = 1.0 / 95.0;
 const NAMES: [&str; 6] = ["hip", "waist", "bust", "neck", "arm", "inseam"];
 
 /// The body of that size and form, meshed at that edge length.
-pub(crate) fn fit(size: &Size, form: &Form, edge: f64, cx: &Context) -> Result<Body, StageError> {
+pub(crate) fn fit(size: &FigureSize, form: &BodyForm, edge: f64, cx: &Context) -> Result<Body, StageError> {
     let (want, mut cell) = (wanted(size), edge.min(size.height * LARGEST_EDGE));
     let (mut goal, mut aims) = (want, Aims::first(size));
     let mut missed = NAMES[0];
@@ -60,10 +60,15 @@ pub(crate) fn fit(size: &Size, form: &Form, edge: f64, cx: &Context) -> Result<B
 
 /// The smooth figure that has the measures; `aims` is where the search begins and where it ends.
 /// The name of what is missed where there is none.
-fn fitted(size: &Size, form: &Form, goal: &Six, aims: &mut Aims) -> Result<Figure, &'static str> {
+fn fitted(
+    size: &FigureSize,
+    form: &BodyForm,
+    goal: &Six,
+    aims: &mut Aims,
+) -> Result<BodyFigure, &'static str> {
     let mut missed = NAMES[0];
     for _ in 0..MAX_FITS {
-        let figure = Figure::new(size, form, aims);
+        let figure = BodyFigure::new(size, form, aims);
         let found = smooth(&figure);
         let ratio: Six = std::array::from_fn(|k| goal[k] / found[k]);
         let Some(worst) = (0..6).find(|&k| ratio[k].is_nan() || (ratio[k] - 1.0).abs() >= SMOOTH_TOLERANCE)
@@ -88,8 +93,8 @@ fn unfit(what: &str) -> StageError {
 }
 
 /// The figure's mesh, brought to the exact height with its soles at zero.
-fn skin(figure: &Figure, cell: f64) -> TriMesh {
-    let (mut positions, triangles) = mesh(figure, &Grid { bounds: figure.bounds(), cell });
+fn skin(figure: &BodyFigure, cell: f64) -> SkinMesh {
+    let (mut positions, triangles) = mesh(figure, &CellGrid { bounds: figure.bounds(), cell });
     let (lo, hi) = positions.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p.y), h.max(p.y)));
     let stretch = figure.size().height / (hi - lo);
     positions.iter_mut().for_each(|p| p.y = (p.y - lo) * stretch);
@@ -97,15 +102,15 @@ fn skin(figure: &Figure, cell: f64) -> TriMesh {
 }
 
 /// Whether the mesh is one closed skin without holes through it.
-fn is_sound((positions, triangles): &TriMesh) -> bool {
-    let topology = Topology::of(positions.len(), triangles);
+fn is_sound((positions, triangles): &SkinMesh) -> bool {
+    let topology = MeshTopology::of(positions.len(), triangles);
     topology.is_closed() && topology.components == 1 && topology.euler() == 2
 }
 
 fn finish(
-    figure: &Figure,
-    skin: TriMesh,
-    landmarks: crate::measures::landmarks::Marks,
+    figure: &BodyFigure,
+    skin: SkinMesh,
+    landmarks: crate::measures::landmarks::NamedLandmarks,
     found: Six,
 ) -> Result<Body, StageError> {
     let [biceps, thigh] = limbs(figure, &skin, &landmarks).ok_or_else(|| unfit("limbs"))?;

@@ -1,6 +1,6 @@
 //! Landmarks of a mannequin: where its figure's skeleton and levels meet its skin.
 
-use crate::figure::Figure;
+use crate::figure::BodyFigure;
 use crate::shape::level;
 use crate::skin::slice::{SliceLoop, slice, trunk};
 use std::collections::BTreeMap;
@@ -10,11 +10,15 @@ use toile_core::artifact::{Landmark, Point3};
 const HALVINGS: usize = 13;
 
 /// Landmarks by name.
-pub(crate) type Marks = BTreeMap<String, Landmark>;
+pub(crate) type NamedLandmarks = BTreeMap<String, Landmark>;
 
 /// The landmarks that [`Body`](toile_core::artifact::Body) lists; `None` where the arms or legs
 /// have grown into the trunk.
-pub(crate) fn landmarks(figure: &Figure, positions: &[Point3], triangles: &[[u32; 3]]) -> Option<Marks> {
+pub(crate) fn landmarks(
+    figure: &BodyFigure,
+    positions: &[Point3],
+    triangles: &[[u32; 3]],
+) -> Option<NamedLandmarks> {
     let mut marks = BTreeMap::new();
     let cut = |y: f64| slice(positions, triangles, y);
     let rings =

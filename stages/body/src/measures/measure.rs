@@ -4,11 +4,11 @@
 //! Girths are those of a tape, which spans hollows. Arms are measured from the shoulder point over
 //! the elbow to the wrist, the inseam from the fork of the legs to the sole.
 
-use crate::figure::Figure;
-use crate::measures::landmarks::Marks;
-use crate::shape::{Size, level};
+use crate::figure::BodyFigure;
+use crate::measures::landmarks::NamedLandmarks;
+use crate::shape::{FigureSize, level};
 use crate::skin::slice::{SliceLoop, convex_hull, slice, trunk};
-use crate::skin::topology::TriMesh;
+use crate::skin::topology::SkinMesh;
 use nalgebra::{Rotation3, Unit};
 use toile_core::artifact::{Point2, Point3, Vector3};
 
@@ -23,12 +23,12 @@ const LINES: i32 = 9;
 pub(crate) type Six = [f64; 6];
 
 /// What a size asks for.
-pub(crate) fn wanted(size: &Size) -> Six {
+pub(crate) fn wanted(size: &FigureSize) -> Six {
     [size.hip, size.waist, size.bust, size.neck, size.arm, size.inseam]
 }
 
 /// The measures of the smooth figure.
-pub(crate) fn smooth(figure: &Figure) -> Six {
+pub(crate) fn smooth(figure: &BodyFigure) -> Six {
     let level = |l: f64| tape(figure, Point3::new(0.0, figure.y(l), 0.0), Vector3::z());
     let (middle, along) = figure.neck();
     let neck = tape(figure, middle, Vector3::x().cross(&along));
@@ -37,7 +37,7 @@ pub(crate) fn smooth(figure: &Figure) -> Six {
 
 /// The length of a tape around the figure without arms: rays from `centre` to the sides and to
 /// `front` meet the skin.
-fn tape(figure: &Figure, centre: Point3, front: Vector3) -> f64 {
+fn tape(figure: &BodyFigure, centre: Point3, front: Vector3) -> f64 {
     let half = RAYS / 2;
     let ring = (0..half).flat_map(|i| {
         let (sin, cos) = ((i as f64 + 0.5) * std::f64::consts::PI / half as f64).sin_cos();
@@ -93,8 +93,8 @@ fn down(value: impl Fn(f64) -> f64, from: f64, sign: f64, reach: f64) -> Option<
     Some(y)
 }
 
-fn arm(figure: &Figure) -> f64 {
-    use crate::skin::field::Field;
+fn arm(figure: &BodyFigure) -> f64 {
+    use crate::skin::field::ScalarField;
     let [joint, elbow, wrist] = figure.arm_axis;
     let (s, x) = (figure.shape.stature, figure.size().shoulder_width / 2.0);
     let line = |k: i32| {
@@ -106,7 +106,7 @@ fn arm(figure: &Figure) -> f64 {
     (elbow - top).norm() + (wrist - elbow).norm()
 }
 
-fn fork(figure: &Figure) -> f64 {
+fn fork(figure: &BodyFigure) -> f64 {
     let s = figure.shape.stature;
     let from = 0.8 * figure.y(level::CROTCH);
     let line = |k: i32| {
@@ -117,7 +117,7 @@ fn fork(figure: &Figure) -> f64 {
 }
 
 /// The measures of the mesh with its landmarks.
-pub(crate) fn meshed(figure: &Figure, mesh: &TriMesh, marks: &Marks) -> Option<Six> {
+pub(crate) fn meshed(figure: &BodyFigure, mesh: &SkinMesh, marks: &NamedLandmarks) -> Option<Six> {
     let (positions, triangles) = mesh;
     let level = |l: f64| trunk(&slice(positions, triangles, figure.y(l)), 0.0).map(|r| r.girth);
     let (middle, along) = figure.neck();
@@ -134,7 +134,7 @@ pub(crate) fn meshed(figure: &Figure, mesh: &TriMesh, marks: &Marks) -> Option<S
 }
 
 /// Girths of upper arm and thigh, which are told only.
-pub(crate) fn limbs(figure: &Figure, mesh: &TriMesh, marks: &Marks) -> Option<[f64; 2]> {
+pub(crate) fn limbs(figure: &BodyFigure, mesh: &SkinMesh, marks: &NamedLandmarks) -> Option<[f64; 2]> {
     let (middle, along) = figure.upper_arm();
     let fork = marks.get("crotch")?.y;
     let below = slice(&mesh.0, &mesh.1, fork - 0.012 * figure.shape.stature);
@@ -144,7 +144,7 @@ pub(crate) fn limbs(figure: &Figure, mesh: &TriMesh, marks: &Marks) -> Option<[f
 
 /// The girth in the plane through a point and square to a direction: that of the loop around the
 /// point.
-fn around((positions, triangles): &TriMesh, centre: Point3, along: Vector3) -> Option<f64> {
+fn around((positions, triangles): &SkinMesh, centre: Point3, along: Vector3) -> Option<f64> {
     let turn = Rotation3::rotation_between(&Unit::new_normalize(along), &Vector3::y_axis())?;
     let turned: Vec<Point3> = positions.iter().map(|p| Point3::from(turn * (p - centre))).collect();
     let holds = |l: &&SliceLoop| {

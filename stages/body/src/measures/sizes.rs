@@ -9,7 +9,7 @@
 use crate::wearer::Wearer;
 
 /// Height, bust, waist and hip, centimetres.
-pub(crate) type Table = [f64; 4];
+pub(crate) type SizeRow = [f64; 4];
 
 /// Bust, waist and hip of women, centimetres, by EU number.
 const WOMEN: [(u32, [f64; 3]); 12] = [
@@ -67,7 +67,7 @@ const HEIGHTS: [f64; 2] = [168.0, 178.0];
 
 /// The measures of a size such as `M` or `EU 38`; of a child where no figure is stated and the
 /// number is a child's. `None` where there is no such size.
-pub(crate) fn measures(size: &str, wearer: Option<Wearer>) -> Option<(Wearer, Table)> {
+pub(crate) fn measures(size: &str, wearer: Option<Wearer>) -> Option<(Wearer, SizeRow)> {
     let text = size.trim().to_uppercase();
     let number = |women: bool| {
         let letter = LETTERS.iter().find(|l| l.0 == text).map(|l| if women { l.1 } else { l.2 });
@@ -91,7 +91,7 @@ pub(crate) fn measures(size: &str, wearer: Option<Wearer>) -> Option<(Wearer, Ta
 
 /// Height, bust, waist and hip of a child of that height, centimetres; beyond the table its ends go
 /// on as they run.
-pub(crate) fn of_child(height: f64) -> Table {
+pub(crate) fn of_child(height: f64) -> SizeRow {
     let last = CHILDREN.len() - 2;
     let k = CHILDREN.iter().filter(|row| f64::from(row.0) <= height).count().saturating_sub(1).min(last);
     let ((low, from), (high, to)) = (CHILDREN[k], CHILDREN[k + 1]);

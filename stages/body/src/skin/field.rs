@@ -5,12 +5,12 @@
 //! trunk. Every part is symmetric about x = 0 and is asked at x >= 0 only.
 //!
 //! Cost: some tens of nanoseconds a part and point. Limit: values are distances to first order
-//! only; whoever needs the skin itself steps onto it with [`Field::onto_skin`].
+//! only; whoever needs the skin itself steps onto it with [`ScalarField::onto_skin`].
 
 use toile_core::artifact::{Point3, Vector3};
 
 /// A solid given by a scalar field.
-pub(crate) trait Field: Sync {
+pub(crate) trait ScalarField: Sync {
     /// Negative inside, positive outside, about the distance near the skin.
     fn value(&self, p: Point3) -> f64;
 
@@ -86,8 +86,8 @@ impl Ellipsoid {
 mod tests {
     use super::*;
 
-    struct Ball;
-    impl Field for Ball {
+    struct UnitBall;
+    impl ScalarField for UnitBall {
         fn value(&self, p: Point3) -> f64 {
             p.coords.norm_squared() - 1.0
         }
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn newton_steps_reach_the_skin() {
-        let p = Ball.onto_skin(Point3::new(0.9, 0.5, -0.2), 5, 0.5);
+        let p = UnitBall.onto_skin(Point3::new(0.9, 0.5, -0.2), 5, 0.5);
         assert!((p.coords.norm() - 1.0).abs() < 1e-9);
     }
 

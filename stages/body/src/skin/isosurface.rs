@@ -1,5 +1,5 @@
-//! The skin of a [`Field`] as an even, closed triangle mesh: surface nets (Gibson, 1998) with one
-//! vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004),
+//! The skin of a [`ScalarField`] as an even, closed triangle mesh: surface nets (Gibson, 1998) with
+//! one vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004),
 //! [refined](crate::skin::refine) where the field asks for shorter edges, with rounds of
 //! tangential smoothing, each followed by a Newton step back onto the skin.
 //!
@@ -10,9 +10,9 @@
 //! vertices in parallel. Limit: parts thinner than two cells are lost, and parts closer than two
 //! cells may share edges of four triangles, which the caller must refuse.
 
-use crate::skin::field::Field;
+use crate::skin::field::ScalarField;
 use crate::skin::refine::{LEVELS, flip, refined};
-use crate::skin::topology::TriMesh;
+use crate::skin::topology::SkinMesh;
 use crate::skin::untangle::untangle;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -33,14 +33,14 @@ const FAR: f64 = 1.7;
 
 /// The box that holds the half of the solid with x >= 0, and the size of a cell, metres.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Grid {
+pub(crate) struct CellGrid {
     /// Upper x, lower and upper y, lower and upper z.
     pub bounds: [f64; 5],
     /// Edge of a cell.
     pub cell: f64,
 }
 
-impl Grid {
+impl CellGrid {
     fn counts(&self) -> [usize; 3] {
         let [x1, y0, y1, z0, z1] = self.bounds;
         [x1, y1 - y0, z1 - z0].map(|l| (l / self.cell).ceil() as usize + 2)
@@ -59,7 +59,7 @@ impl Grid {
 }
 
 /// Meshes the skin of a field that is symmetric about x = 0.
-pub(crate) fn mesh(field: &impl Field, grid: &Grid) -> TriMesh {
+pub(crate) fn mesh(field: &impl ScalarField, grid: &CellGrid) -> SkinMesh {
     let (points, quads) = Samples::take(field, grid).nets(grid);
     let points = relocate(&points, |i| field.onto_skin(points[i], 2, grid.cell));
     let triangles = quads.iter().flat_map(|q| split(&points, *q)).collect();
@@ -75,7 +75,12 @@ pub(crate) fn mesh(field: &impl Field, grid: &Grid) -> TriMesh {
 }
 
 /// Rounds of smoothing and of turning edges.
-fn even(field: &impl Field, grid: &Grid, (mut points, mut triangles): TriMesh, rounds: usize) -> TriMesh {
+fn even(
+    field: &impl ScalarField,
+    grid: &CellGrid,
+    (mut points, mut triangles): SkinMesh,
+    rounds: usize,
+) -> SkinMesh {
     for _ in 0..rounds {
         flip(&points, &mut triangles);
         let (around, normals) = (neighbours(points.len(), &triangles), normals(&points, &triangles));
@@ -142,7 +147,7 @@ struct Samples {
 
 impl Samples {
     /// Blocks of points that lie far from the skin get their middle's value.
-    fn take(field: &impl Field, grid: &Grid) -> Self {
+    fn take(field: &impl ScalarField, grid: &CellGrid) -> Self {
         let counts = grid.counts();
         let layers: Vec<usize> = (0..counts[1]).step_by(BLOCK).collect();
         let layer = |&j: &usize| Self::layer(field, grid, counts, j);
@@ -151,7 +156,7 @@ impl Samples {
     }
 
     /// The values of up to [`BLOCK`] slabs from `j0` on.
-    fn layer(field: &impl Field, grid: &Grid, [nx, ny, nz]: [usize; 3], j0: usize) -> Vec<f64> {
+    fn layer(field: &impl ScalarField, grid: &CellGrid, [nx, ny, nz]: [usize; 3], j0: usize) -> Vec<f64> {
         let rows = BLOCK.min(ny - j0);
         let mut values = vec![0.0; rows * nx * nz];
         let half = 0.5 * (BLOCK - 1) as f64 * grid.cell;
@@ -178,7 +183,7 @@ impl Samples {
     }
 
     /// One vertex for each sheet of skin in a cell, one quad for each edge that the skin crosses.
-    fn nets(&self, grid: &Grid) -> (Vec<Point3>, Vec<[u32; 4]>) {
+    fn nets(&self, grid: &CellGrid) -> (Vec<Point3>, Vec<[u32; 4]>) {
         let [nx, ny, nz] = self.counts;
         let cells =
             (0..ny - 1).flat_map(|j| (0..nx - 1).flat_map(move |i| (0..nz - 1).map(move |k| [i, j, k])));
@@ -196,7 +201,7 @@ impl Samples {
 
     /// Adds a vertex for each sheet, at the mean of its crossings with the cell's edges; returns
     /// the vertex of each edge.
-    fn cell_vertices(&self, grid: &Grid, cell: [usize; 3], points: &mut Vec<Point3>) -> [u32; 12] {
+    fn cell_vertices(&self, grid: &CellGrid, cell: [usize; 3], points: &mut Vec<Point3>) -> [u32; 12] {
         let sheets = self.sheets(cell);
         let mut vertices = [u32::MAX; 12];
         for sheet in 0..12 {
@@ -212,7 +217,7 @@ impl Samples {
         vertices
     }
 
-    fn crossing(&self, grid: &Grid, cell: [usize; 3], edge: usize) -> Vector3 {
+    fn crossing(&self, grid: &CellGrid, cell: [usize; 3], edge: usize) -> Vector3 {
         let (from, to) = edge_ends(cell, edge);
         let (a, b) = (self.at(from), self.at(to));
         grid.point(from).coords.lerp(&grid.point(to).coords, a / (a - b))
@@ -324,7 +329,7 @@ fn split(points: &[Point3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
 }
 
 /// Adds the image in the plane x = 0, sharing the vertices of the plane.
-fn mirror(mut points: Vec<Point3>, mut triangles: Vec<[u32; 3]>) -> TriMesh {
+fn mirror(mut points: Vec<Point3>, mut triangles: Vec<[u32; 3]>) -> SkinMesh {
     let half = points.len();
     let mut image = Vec::with_capacity(half);
     for i in 0..half {
@@ -343,10 +348,10 @@ fn mirror(mut points: Vec<Point3>, mut triangles: Vec<[u32; 3]>) -> TriMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skin::topology::Topology;
+    use crate::skin::topology::MeshTopology;
 
     struct Ball(f64);
-    impl Field for Ball {
+    impl ScalarField for Ball {
         fn value(&self, p: Point3) -> f64 {
             p.coords.norm() - self.0
         }
@@ -354,9 +359,9 @@ mod tests {
 
     #[test]
     fn a_ball_is_closed_even_and_round() {
-        let grid = Grid { bounds: [1.1, -1.1, 1.1, -1.1, 1.1], cell: 0.13 };
+        let grid = CellGrid { bounds: [1.1, -1.1, 1.1, -1.1, 1.1], cell: 0.13 };
         let (points, triangles) = mesh(&Ball(1.0), &grid);
-        let topology = Topology::of(points.len(), &triangles);
+        let topology = MeshTopology::of(points.len(), &triangles);
         assert!(topology.is_closed(), "{topology:?}");
         assert_eq!((topology.components, topology.euler()), (1, 2));
         assert!(points.iter().all(|p| (p.coords.norm() - 1.0).abs() < 1e-9));

@@ -5,7 +5,7 @@
 //! sort of the half-edges a round. Limit: triangles between fine and coarse places have angles down
 //! to some 25 degrees.
 
-use crate::skin::topology::TriMesh;
+use crate::skin::topology::SkinMesh;
 use std::collections::BTreeSet;
 use toile_core::artifact::{Point3, Vector3};
 
@@ -20,10 +20,10 @@ const TURNS: usize = 3;
 
 /// Halves the edges that are longer than wanted; new vertices are put onto the skin by `project`.
 pub(crate) fn refined(
-    (mut points, triangles): TriMesh,
+    (mut points, triangles): SkinMesh,
     wanted: impl Fn(Point3) -> f64,
     project: impl Fn(Point3) -> Point3,
-) -> TriMesh {
+) -> SkinMesh {
     let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(sides).map(sorted).collect();
     edges.sort_unstable();
     edges.dedup();
@@ -127,10 +127,10 @@ fn better(points: &[Point3], [a, b, c, d]: [u32; 4]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::skin::topology::Topology;
+    use crate::skin::topology::MeshTopology;
 
     /// An octahedron.
-    fn solid() -> TriMesh {
+    fn solid() -> SkinMesh {
         let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
         let points = vec![
             p(1.0, 0.0, 0.0),
@@ -152,7 +152,7 @@ mod tests {
             mesh = refined(mesh, |p| if p.x > 0.3 { 0.2 } else { 0.8 }, onto);
             flip(&mesh.0, &mut mesh.1);
         }
-        let topology = Topology::of(mesh.0.len(), &mesh.1);
+        let topology = MeshTopology::of(mesh.0.len(), &mesh.1);
         assert!(topology.is_closed() && topology.euler() == 2, "{topology:?}");
         let outward = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| mesh.0[i as usize].coords);

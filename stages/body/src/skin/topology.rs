@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use toile_core::artifact::Point3;
 
 /// Vertices and triangles, counter-clockwise from outside.
-pub(crate) type TriMesh = (Vec<Point3>, Vec<[u32; 3]>);
+pub(crate) type SkinMesh = (Vec<Point3>, Vec<[u32; 3]>);
 
 /// The vertices beside each of so many.
 pub(crate) fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<BTreeSet<u32>> {
@@ -21,7 +21,7 @@ pub(crate) fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<BTreeSe
 
 /// What the edges of a triangle mesh tell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Topology {
+pub(crate) struct MeshTopology {
     /// Vertices that a triangle uses.
     pub vertices: usize,
     /// Edges.
@@ -40,7 +40,7 @@ pub(crate) struct Topology {
     pub first_faulty: Option<[u32; 2]>,
 }
 
-impl Topology {
+impl MeshTopology {
     /// Counts over a mesh of `vertices` vertices.
     pub(crate) fn of(vertices: usize, triangles: &[[u32; 3]]) -> Self {
         let mut half_edges: Vec<(u32, u32, bool)> = triangles
@@ -66,7 +66,7 @@ impl Topology {
                 }
             }
         }
-        let mut pieces = Pieces::new(vertices);
+        let mut pieces = VertexSets::new(vertices);
         triangles.iter().for_each(|t| {
             pieces.join(t[0], t[1]);
             pieces.join(t[0], t[2]);
@@ -75,7 +75,7 @@ impl Topology {
         triangles.iter().flatten().for_each(|&i| used[i as usize] = true);
         let components = (0..vertices as u32).filter(|&i| used[i as usize] && pieces.root(i) == i).count();
         let vertices = used.iter().filter(|u| **u).count();
-        Topology {
+        MeshTopology {
             vertices,
             edges,
             triangles: triangles.len(),
@@ -100,12 +100,12 @@ impl Topology {
 
 /// Disjoint sets of vertices; the root of a set is its least vertex.
 #[derive(Debug)]
-pub(crate) struct Pieces(Vec<u32>);
+pub(crate) struct VertexSets(Vec<u32>);
 
-impl Pieces {
+impl VertexSets {
     /// Every vertex on its own.
     pub(crate) fn new(count: usize) -> Self {
-        Pieces((0..count as u32).collect())
+        VertexSets((0..count as u32).collect())
     }
 
     /// The least vertex of the set.
@@ -133,20 +133,20 @@ mod tests {
 
     #[test]
     fn a_tetrahedron_is_closed() {
-        let t = Topology::of(4, &TETRAHEDRON);
+        let t = MeshTopology::of(4, &TETRAHEDRON);
         assert!(t.is_closed());
         assert_eq!((t.euler(), t.components), (2, 1));
     }
 
     #[test]
     fn a_missing_triangle_opens_three_edges() {
-        assert_eq!(Topology::of(4, &TETRAHEDRON[1..]).open, 3);
+        assert_eq!(MeshTopology::of(4, &TETRAHEDRON[1..]).open, 3);
     }
 
     #[test]
     fn a_turned_triangle_is_a_fault() {
         let mut turned = TETRAHEDRON;
         turned[0].swap(0, 1);
-        assert_eq!(Topology::of(4, &turned).faulty, 3);
+        assert_eq!(MeshTopology::of(4, &turned).faulty, 3);
     }
 }

@@ -1,5 +1,6 @@
 //! The friction of one contact of cloth with cloth, kept from step to step.
 
+use crate::contact::coulomb::FrictionMemory;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -13,12 +14,10 @@ pub struct FrictionContact {
     pub weights: [f64; 4],
     /// Unit vector from the second feature to the first.
     pub normal: Vec3,
-    /// Anchor: the vector between the features that friction holds, m.
-    pub anchor: Vec3,
-    /// Tangential displacement at the start of the step, m.
-    pub slid: Vec3,
-    /// The normal force that limits friction, a mean over the last steps, N.
-    pub load: f64,
     /// Coefficient of friction.
     pub friction: f64,
+    /// The vector between the features that friction holds, and the load.
+    pub memory: FrictionMemory,
+    /// Tangential displacement at the start of the step, m.
+    pub slid: Vec3,
 }

@@ -2,6 +2,7 @@
 
 pub mod body;
 pub mod collision_surface;
+pub mod coulomb;
 pub mod friction;
 pub mod past;
 pub mod response;

@@ -4,6 +4,7 @@
 //! friction slides a little before friction holds it again.
 
 use super::{Scene, SceneError};
+use crate::contact::coulomb::FrictionMemory;
 use crate::contact::friction::FrictionContact;
 use nalgebra::Vector3;
 
@@ -49,8 +50,8 @@ impl Held {
 pub fn contact(nodes: [u32; 4], f: &[f64; FIGURES]) -> FrictionContact {
     let vector = |k: usize| Vec3::new(f[k], f[k + 1], f[k + 2]);
     let weights = [f[0], f[1], f[2], f[3]];
-    let (normal, anchor, slid) = (vector(4), vector(7), vector(10));
-    FrictionContact { nodes, weights, normal, anchor, slid, load: f[13], friction: f[14] }
+    let memory = FrictionMemory { anchor: vector(7), load: f[13] };
+    FrictionContact { nodes, weights, normal: vector(4), friction: f[14], memory, slid: vector(10) }
 }
 
 /// The numbers of a contact besides its nodes.
@@ -58,10 +59,10 @@ pub fn contact(nodes: [u32; 4], f: &[f64; FIGURES]) -> FrictionContact {
 pub fn figures(c: &FrictionContact) -> [f64; FIGURES] {
     let mut f = [0.0; FIGURES];
     f[..4].copy_from_slice(&c.weights);
-    for (k, v) in [(4, c.normal), (7, c.anchor), (10, c.slid)] {
+    for (k, v) in [(4, c.normal), (7, c.memory.anchor), (10, c.slid)] {
         f[k..k + 3].copy_from_slice(v.as_slice());
     }
-    (f[13], f[14]) = (c.load, c.friction);
+    (f[13], f[14]) = (c.memory.load, c.friction);
     f
 }
 

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use toile_core::artifact::{Body, BodyContact, Point3, Surface};
 use toile_core::{Context, StageError};
 use toile_geometry::Vec3;
-use toile_geometry::lattice::Lattice;
+use toile_geometry::lattice::DistanceLattice;
 use toile_geometry::signed_distance::SignedDistance;
 use toile_geometry::volume::BoundingVolume;
 
@@ -21,14 +21,14 @@ const CHUNK: usize = 128;
 #[derive(Debug)]
 pub struct BodyIndex<V> {
     skin: SignedDistance<V>,
-    lattice: Lattice,
+    lattice: DistanceLattice,
 }
 
 impl<V: BoundingVolume> BodyIndex<V> {
     /// The index of a body that has passed its checks.
     pub fn new(body: &Body, distances: Distances, cx: &Context) -> Result<Self, StageError> {
         let vertices = coords(&body.positions);
-        let lattice = Lattice::around(vertices);
+        let lattice = DistanceLattice::around(vertices);
         let skin = SignedDistance::new(vertices.to_vec(), body.triangles.clone());
         cx.check()?;
         let index = BodyIndex { skin, lattice };

@@ -10,7 +10,7 @@ use toile_core::decide::Decision;
 use toile_core::param::ron_text;
 use toile_core::prelude::*;
 use toile_core::{ByPlace, Node};
-use toile_geometry::volume::{Aabb, BoundingVolume, KDop, Obb, Sphere};
+use toile_geometry::volume::{Aabb, BoundingSphere, BoundingVolume, KDop, Obb};
 
 /// The bounding volume of the hierarchies.
 #[choice]
@@ -96,7 +96,7 @@ impl BvhCollider {
         let body = bridged.as_ref().or(body);
         let scheme = match self.volume {
             Volume::Aabb => self.scheme::<Aabb>(body, cx),
-            Volume::Sphere => self.scheme::<Sphere>(body, cx),
+            Volume::Sphere => self.scheme::<BoundingSphere>(body, cx),
             Volume::Obb => self.scheme::<Obb>(body, cx),
             Volume::KDop(6) => self.scheme::<KDop<3>>(body, cx),
             Volume::KDop(14) => self.scheme::<KDop<7>>(body, cx),

@@ -3,7 +3,7 @@
 use super::asked_distances::Distances;
 use super::body_index::BodyIndex;
 use super::points::coords;
-use super::self_collision::{Cloth, tree, usable};
+use super::self_collision::{SearchedCloth, tree, usable};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use toile_core::artifact::{Body, BodyContact, Collide, ColliderCard, Point3, SelfContact, Surface};
@@ -21,12 +21,12 @@ pub struct BvhScheme<V> {
     body: Option<BodyIndex<V>>,
     landmarks: BTreeMap<String, Point3>,
     // A query takes a tree out and puts it back, and works on it outside the lock.
-    pool: Mutex<Vec<Kept<V>>>,
+    pool: Mutex<Vec<KeptTree<V>>>,
 }
 
 /// A tree with the cloth that it was made for.
 #[derive(Debug)]
-struct Kept<V> {
+struct KeptTree<V> {
     vertices: usize,
     triangles: Vec<[u32; 3]>,
     usable: Vec<(u32, [u32; 3])>,
@@ -52,15 +52,15 @@ impl<V: BoundingVolume> BvhScheme<V> {
         &self,
         positions: &[Point3],
         triangles: &[[u32; 3]],
-        f: impl FnOnce(&Cloth<'_, V>) -> T,
+        f: impl FnOnce(&SearchedCloth<'_, V>) -> T,
     ) -> T {
         let x = coords(positions);
         let kept = self.lock().pop().filter(|k| k.vertices == x.len() && k.triangles == triangles);
         let kept = kept.unwrap_or_else(|| {
             let usable = usable(triangles, x.len());
-            Kept { vertices: x.len(), triangles: triangles.to_vec(), tree: tree(x, &usable), usable }
+            KeptTree { vertices: x.len(), triangles: triangles.to_vec(), tree: tree(x, &usable), usable }
         });
-        let result = f(&Cloth { x, usable: &kept.usable, tree: &kept.tree });
+        let result = f(&SearchedCloth { x, usable: &kept.usable, tree: &kept.tree });
         let mut pool = self.lock();
         if pool.len() < POOL {
             pool.push(kept);
@@ -68,7 +68,7 @@ impl<V: BoundingVolume> BvhScheme<V> {
         result
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Kept<V>>> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<KeptTree<V>>> {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -16,7 +16,7 @@ use toile_geometry::volume::BoundingVolume;
 
 /// A cloth as it is asked about: places, which may be no finite numbers, and triangles, which may
 /// name vertices that there are not.
-pub(super) struct Cloth<'a, V> {
+pub(super) struct SearchedCloth<'a, V> {
     /// Places, m.
     pub(super) x: &'a [Vec3],
     /// Those of its triangles that can be used, with their numbers.
@@ -26,7 +26,7 @@ pub(super) struct Cloth<'a, V> {
 }
 
 /// Pairs that share no node, nearer than `reach`, with their closest points.
-struct Near {
+struct NearPair {
     nodes: [u32; 4],
     found: Proximity,
     kind: NearKind,
@@ -62,18 +62,19 @@ fn is_finite(p: &Vec3) -> bool {
     p.iter().all(|c| c.is_finite())
 }
 
-impl<V: BoundingVolume> Cloth<'_, V> {
+impl<V: BoundingVolume> SearchedCloth<'_, V> {
     /// Vertex-triangle and edge-edge contacts nearer than `reach`, each pair of closest features
     /// once.
     pub(super) fn contacts(&self, reach: f64, out: &mut Vec<SelfContact>) {
         let pairs = self.near(reach);
-        let mut keyed: Vec<([u32; 4], &Near)> = pairs.iter().filter_map(|p| key(p).map(|k| (k, p))).collect();
+        let mut keyed: Vec<([u32; 4], &NearPair)> =
+            pairs.iter().filter_map(|p| key(p).map(|k| (k, p))).collect();
         keyed.sort_unstable_by_key(|(key, p)| (*key, p.nodes));
         keyed.dedup_by_key(|(key, _)| *key);
-        let mut edges: Vec<&Near> =
+        let mut edges: Vec<&NearPair> =
             pairs.iter().filter(|p| matches!(p.kind, NearKind::EdgeEdge(true))).collect();
         edges.sort_unstable_by_key(|p| p.nodes);
-        let mut vertices: Vec<&Near> = keyed.into_iter().map(|(_, p)| p).collect();
+        let mut vertices: Vec<&NearPair> = keyed.into_iter().map(|(_, p)| p).collect();
         vertices.sort_unstable_by_key(|p| p.nodes);
         out.extend(vertices.into_iter().chain(edges).map(|p| SelfContact {
             vertices: p.nodes,
@@ -107,7 +108,7 @@ impl<V: BoundingVolume> Cloth<'_, V> {
             .collect()
     }
 
-    fn near(&self, reach: f64) -> Vec<Near> {
+    fn near(&self, reach: f64) -> Vec<NearPair> {
         let (x, still) = (finite(self.x), vec![Vec3::zeros(); self.x.len()]);
         let pairs = self.tree.pairs(&x, &still, reach);
         pairs
@@ -119,19 +120,19 @@ impl<V: BoundingVolume> Cloth<'_, V> {
 }
 
 /// A pair's closest points; edges in the order of their nodes.
-fn near(pair: &Pair, x: &[Vec3]) -> Near {
+fn near(pair: &Pair, x: &[Vec3]) -> NearPair {
     let at = |i: u32| x[i as usize];
     let [a, b, c, d] = pair.nodes;
     match pair.kind {
         Kind::VertexTriangle => {
             let found = vertex_triangle(&at(a), &[b, c, d].map(at)).0;
-            Near { nodes: pair.nodes, found, kind: NearKind::VertexTriangle }
+            NearPair { nodes: pair.nodes, found, kind: NearKind::VertexTriangle }
         }
         Kind::EdgeEdge => {
             let (e, f) = (sorted([a, b]), sorted([c, d]));
             let (e, f) = if e <= f { (e, f) } else { (f, e) };
             let (found, inside) = edge_edge(&e.map(at), &f.map(at));
-            Near { nodes: [e[0], e[1], f[0], f[1]], found, kind: NearKind::EdgeEdge(inside) }
+            NearPair { nodes: [e[0], e[1], f[0], f[1]], found, kind: NearKind::EdgeEdge(inside) }
         }
     }
 }
@@ -139,7 +140,7 @@ fn near(pair: &Pair, x: &[Vec3]) -> Near {
 /// What makes a vertex-triangle pair the same as another: the nodes that carry weight, whichever
 /// triangle they were seen in and from whichever side. A side's end that carries none does not
 /// count, or a vertex nearest to a corner would be found both there and on the side.
-fn key(pair: &Near) -> Option<[u32; 4]> {
+fn key(pair: &NearPair) -> Option<[u32; 4]> {
     let NearKind::VertexTriangle = pair.kind else { return None };
     const NONE: u32 = u32::MAX;
     let [v, t @ ..] = pair.nodes;

@@ -3,17 +3,17 @@
 use super::points;
 use std::collections::BTreeMap;
 use toile_core::artifact::{Body, Point3};
-use toile_geometry::shapes::{self, Shape};
+use toile_geometry::shapes::{self, ShapeMesh};
 
 pub(super) use toile_geometry::shapes::numbers;
 
-pub(super) type Cloth = (Vec<Point3>, Vec<[u32; 3]>);
+pub(super) type ClothMesh = (Vec<Point3>, Vec<[u32; 3]>);
 
-fn cloth((positions, triangles): Shape) -> Cloth {
+fn cloth((positions, triangles): ShapeMesh) -> ClothMesh {
     (points::of(&positions).to_vec(), triangles)
 }
 
-pub(super) fn body((positions, triangles): Cloth) -> Body {
+pub(super) fn body((positions, triangles): ClothMesh) -> Body {
     Body { positions, triangles, landmarks: BTreeMap::new(), measurements: BTreeMap::new() }
 }
 
@@ -28,17 +28,17 @@ pub(super) fn sphere(radius: f64, rows: u32, columns: u32) -> Body {
 }
 
 /// See [`shapes::sheet`].
-pub(super) fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> Cloth {
+pub(super) fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> ClothMesh {
     cloth(shapes::sheet(n, height))
 }
 
 /// See [`shapes::soup`].
-pub(super) fn soup(seed: u64, count: u32, size: f64) -> Cloth {
+pub(super) fn soup(seed: u64, count: u32, size: f64) -> ClothMesh {
     cloth(shapes::soup(seed, count, size))
 }
 
 /// Two pieces of cloth as one.
-pub(super) fn both(mut a: Cloth, b: Cloth) -> Cloth {
+pub(super) fn both(mut a: ClothMesh, b: ClothMesh) -> ClothMesh {
     let offset = a.0.len() as u32;
     a.0.extend(b.0);
     a.1.extend(b.1.into_iter().map(|t| t.map(|i| i + offset)));

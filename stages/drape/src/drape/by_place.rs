@@ -19,7 +19,7 @@ const APART: f64 = 0.04;
 
 /// What the garment of a stage comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Origin {
+enum GarmentOrigin {
     /// A placement of a pattern's pieces.
     Placed(usize),
     /// A draper.
@@ -27,7 +27,7 @@ enum Origin {
 }
 
 /// Whence the garment of stage `index` comes.
-fn origin(nodes: &[Node], index: usize) -> Option<Origin> {
+fn origin(nodes: &[Node], index: usize) -> Option<GarmentOrigin> {
     let node = nodes.get(index)?;
     let mut ports = node.card.inputs.iter().zip(&node.inputs);
     let (_, feed) = ports.find(|(port, _)| port.kind == Garment::KIND && !port.original)?;
@@ -35,9 +35,9 @@ fn origin(nodes: &[Node], index: usize) -> Option<Origin> {
     let maker = nodes.get(before)?;
     let takes = |kind: Kind| maker.card.inputs.iter().any(|p| p.kind == kind && !p.original);
     match maker.card.role {
-        Role::Draper => Some(Origin::Draped(before)),
+        Role::Draper => Some(GarmentOrigin::Draped(before)),
         Role::Placement if takes(Garment::KIND) => origin(nodes, before),
-        Role::Placement if takes(Pattern::KIND) => Some(Origin::Placed(before)),
+        Role::Placement if takes(Pattern::KIND) => Some(GarmentOrigin::Placed(before)),
         _ => None,
     }
 }
@@ -47,8 +47,8 @@ pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
     let set = |name: &'static str| vec![(name, "true".to_owned())];
     let own = nodes.get(index).map(|n| n.card.name);
     match origin(nodes, index) {
-        Some(Origin::Placed(_)) => ByPlace { like: None, set: set("sew_through") },
-        Some(Origin::Draped(k)) => {
+        Some(GarmentOrigin::Placed(_)) => ByPlace { like: None, set: set("sew_through") },
+        Some(GarmentOrigin::Draped(k)) => {
             let is_alike = nodes.get(k).map(|n| n.card.name) == own;
             let mut set = set("from_here");
             set.push(("sew_through", "false".to_owned()));
@@ -62,13 +62,13 @@ pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
 pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
     let is_written = |name: &str| known.node().params.contains_key(name);
     let (from, what, fact, name) = match origin(known.nodes, known.index)? {
-        Origin::Placed(k) => (
+        GarmentOrigin::Placed(k) => (
             k,
             "seams close through what lies between them",
             "puts a pattern's pieces around the body",
             "sew_through",
         ),
-        Origin::Draped(k) => (k, "goes on from where the garment hangs", "has draped it", "from_here"),
+        GarmentOrigin::Draped(k) => (k, "goes on from where the garment hangs", "has draped it", "from_here"),
     };
     let maker = known.nodes.get(from)?;
     (!is_written(name)).then(|| Decision {

@@ -3,7 +3,7 @@
 //! Method: leapfrog with a step below the limit 2/omega_max, which is computed. Cost: a few flops a
 //! vertex and step, but some thousand steps a second. Limit: stiff or fine cloth makes steps tiny.
 
-use super::models::{Bending, Membrane, models};
+use super::models::{BendingModel, MembraneModel, models};
 use super::motion::{InTime, drape};
 use toile_cloth::motion::Method;
 use toile_core::prelude::*;
@@ -25,11 +25,11 @@ use toile_core::prelude::*;
 )]
 pub struct CentralDifferences {
     /// What cloth resists in its plane.
-    #[param(default = Membrane::Woven, trades)]
-    pub membrane: Membrane,
+    #[param(default = MembraneModel::Woven, trades)]
+    pub membrane: MembraneModel,
     /// What cloth resists when it is folded.
-    #[param(default = Bending::Hinge, trades)]
-    pub bending: Bending,
+    #[param(default = BendingModel::Hinge, trades)]
+    pub bending: BendingModel,
     /// The motion.
     #[param(flatten)]
     pub motion: InTime,

@@ -4,7 +4,7 @@
 //! factorizations a step. Limit: contacts act after the step, so `dt` above 8 ms lets tight
 //! garments slip.
 
-use super::models::{Bending, Membrane, models};
+use super::models::{BendingModel, MembraneModel, models};
 use super::motion::{InTime, drape};
 use toile_cloth::motion::Method;
 use toile_core::prelude::*;
@@ -26,11 +26,11 @@ use toile_core::prelude::*;
 )]
 pub struct ImplicitEuler {
     /// What cloth resists in its plane.
-    #[param(default = Membrane::Woven, trades)]
-    pub membrane: Membrane,
+    #[param(default = MembraneModel::Woven, trades)]
+    pub membrane: MembraneModel,
     /// What cloth resists when it is folded.
-    #[param(default = Bending::Hinge, trades)]
-    pub bending: Bending,
+    #[param(default = BendingModel::Hinge, trades)]
+    pub bending: BendingModel,
     /// Force that a step leaves on a vertex.
     #[param(default = 1e-4, min = 1e-12, max = 1.0, unit = "N", trades, finer = "less")]
     pub tolerance: f64,

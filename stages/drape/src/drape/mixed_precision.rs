@@ -15,18 +15,18 @@ use toile_core::prelude::*;
 /// How precise the factor of each step's matrix is.
 #[choice]
 #[derive(Copy, Eq)]
-pub enum Precision {
+pub enum FactorPrecision {
     /// Single where that solves the step well, else double.
     Mixed,
     /// Always double.
     Double,
 }
 
-impl From<Precision> for toile_cloth::statics::drive::solve::Precision {
-    fn from(precision: Precision) -> Self {
+impl From<FactorPrecision> for toile_cloth::statics::drive::solve::Precision {
+    fn from(precision: FactorPrecision) -> Self {
         match precision {
-            Precision::Mixed => Self::Mixed,
-            Precision::Double => Self::Double,
+            FactorPrecision::Mixed => Self::Mixed,
+            FactorPrecision::Double => Self::Double,
         }
     }
 }
@@ -39,9 +39,9 @@ const SHARE: f64 = 0.08;
 pub(super) const APART: (f64, f64) = (0.008, 0.02);
 
 /// The decision of a drape of so many triangles.
-pub(super) fn rule(precision: Precision, continued: bool, size: &Size) -> Option<Decision> {
+pub(super) fn rule(precision: FactorPrecision, continued: bool, size: &Size) -> Option<Decision> {
     let triangles = size.get(Quantity::Triangles).filter(|n| *n > 0.0)?;
-    (precision == Precision::Mixed).then(|| Decision {
+    (precision == FactorPrecision::Mixed).then(|| Decision {
         rule: "mixed-precision".into(),
         state: State::Simplified,
         what: "double precision of each step's factor: only where single does not solve the step".into(),
@@ -62,14 +62,14 @@ mod tests {
     #[test]
     fn it_speaks_where_precision_is_mixed_and_there_is_cloth() {
         let size = Size::new().with(Quantity::Triangles, 4_673.0);
-        let told = rule(Precision::Mixed, true, &size).map(|d| (d.fact, d.tolerance));
+        let told = rule(FactorPrecision::Mixed, true, &size).map(|d| (d.fact, d.tolerance));
         let words = "about 4673 triangles, whose matrix tells at each step how well it is solved".to_owned();
         assert_eq!(told, Some((words, Tolerance::Distance(0.008))));
         assert_eq!(
-            rule(Precision::Mixed, false, &size).map(|d| d.tolerance),
+            rule(FactorPrecision::Mixed, false, &size).map(|d| d.tolerance),
             Some(Tolerance::Distance(0.02))
         );
-        assert_eq!(rule(Precision::Double, true, &size), None);
-        assert_eq!(rule(Precision::Mixed, true, &Size::new()), None);
+        assert_eq!(rule(FactorPrecision::Double, true, &size), None);
+        assert_eq!(rule(FactorPrecision::Mixed, true, &Size::new()), None);
     }
 }

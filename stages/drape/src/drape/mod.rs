@@ -19,14 +19,14 @@ mod xpbd;
 
 pub use central_differences::CentralDifferences;
 pub use implicit_euler::ImplicitEuler;
-pub use mixed_precision::Precision;
-pub use models::{Bending, Membrane};
+pub use mixed_precision::FactorPrecision;
+pub use models::{BendingModel, MembraneModel};
 pub use motion::InTime;
 pub(crate) use motion::{Course, moved};
 pub use projective::Projective;
 pub(crate) use soften::{damping, softened, springs};
 pub use spring::SpringDraper;
-pub use static_equilibrium::{Proof, StaticEquilibrium};
+pub use static_equilibrium::{ProofSteps, StaticEquilibrium};
 use toile_core::{Migration, Registry};
 pub use xpbd::Xpbd;
 

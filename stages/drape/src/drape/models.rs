@@ -6,7 +6,7 @@ use toile_core::prelude::*;
 /// What cloth resists in its plane.
 #[choice]
 #[derive(Copy, Eq)]
-pub enum Membrane {
+pub enum MembraneModel {
     /// Triangles with the fabric's warp, weft and shear curves.
     Woven,
     /// Isotropic triangles (St Venant-Kirchhoff) of the warp's first slope and Poisson's ratio.
@@ -19,7 +19,7 @@ pub enum Membrane {
 /// What cloth resists when it is folded.
 #[choice]
 #[derive(Copy, Eq)]
-pub enum Bending {
+pub enum BendingModel {
     /// Quadratic hinges (Bergou et al. 2006): for cloth that hardly stretches; the fastest.
     Quadratic,
     /// Coupled hinges by their angles (Grinspun et al. 2003, 2006): right at any fold.
@@ -33,17 +33,17 @@ pub enum Bending {
 }
 
 /// The engine's models.
-pub(super) fn models(membrane: Membrane, bending: Bending) -> Models {
+pub(super) fn models(membrane: MembraneModel, bending: BendingModel) -> Models {
     let membrane = match membrane {
-        Membrane::Woven => EngineMembrane::Woven,
-        Membrane::StVenantKirchhoff => EngineMembrane::StVenantKirchhoff,
-        Membrane::Springs => EngineMembrane::Springs,
+        MembraneModel::Woven => EngineMembrane::Woven,
+        MembraneModel::StVenantKirchhoff => EngineMembrane::StVenantKirchhoff,
+        MembraneModel::Springs => EngineMembrane::Springs,
     };
     let bending = match bending {
-        Bending::Quadratic => EngineBending::Quadratic,
-        Bending::Hinge => EngineBending::Hinge,
-        Bending::DiscreteShell => EngineBending::DiscreteShell,
-        Bending::SkipOne => EngineBending::SkipOne,
+        BendingModel::Quadratic => EngineBending::Quadratic,
+        BendingModel::Hinge => EngineBending::Hinge,
+        BendingModel::DiscreteShell => EngineBending::DiscreteShell,
+        BendingModel::SkipOne => EngineBending::SkipOne,
     };
     Models { membrane, bending }
 }

@@ -1,7 +1,9 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion,
 //! and back.
 
-use crate::engine::{self, Motions, SchemeSurface, Setting, Words, only_joins, scene_of, weld_seams};
+use crate::engine::{
+    self, MessageContext, Motions, SceneSetting, SchemeSurface, only_joins, scene_of, weld_seams,
+};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -102,7 +104,7 @@ pub(crate) fn moved(
     let air = time.air();
     check_wind(&air)?;
     let card = collider.map(|c| c.scheme.card());
-    let setting = Setting {
+    let setting = SceneSetting {
         gravity: Vector3::new(0.0, -time.gravity, 0.0),
         air: Some(air).filter(EngineAir::acts),
         thickness: card.map_or(THICKNESS, |c| c.thickness),
@@ -123,7 +125,7 @@ pub(crate) fn moved(
     let stopper = Stopper::when(move || cancel.is_cancelled());
     let moved = motion.run_until_stopped(&scene, engine_collider, &stopper, &mut |p| tell(p, time, cx));
     cx.check()?;
-    let words = Words { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
+    let words = MessageContext { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
     let moved = moved.map_err(|e| words.motion(&e, &course.can))?;
     if !moved.converged {
         cx.warn(unrest(&moved, time.speed));

@@ -9,12 +9,14 @@
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
 use super::by_place;
-use super::mixed_precision::{self, Precision};
-use super::models::{Bending, Membrane, models};
+use super::mixed_precision::{self, FactorPrecision};
+use super::models::{BendingModel, MembraneModel, models};
 use super::motion::engine_air;
 use super::starts;
 use super::{ImplicitEuler, InTime};
-use crate::engine::{self, Rests, SchemeSurface, Setting, Words, crossing, scene_of, weld_seams};
+use crate::engine::{
+    self, MessageContext, Rests, SceneSetting, SchemeSurface, crossing, scene_of, weld_seams,
+};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -33,7 +35,7 @@ use toile_core::{ByPlace, Node};
 /// gains speed in it.
 #[choice]
 #[derive(Copy, Eq)]
-pub enum Proof {
+pub enum ProofSteps {
     /// A sixtieth of a second: the least force left over shows.
     Short,
     /// A tenth of a second and more, too: what slides or falls shows. Folds may still creep, in
@@ -60,7 +62,7 @@ pub enum Proof {
 /// Behind another `StaticEquilibrium` it takes that one's parameters where it is given none.
 #[stage(
     role = Draper,
-    version = 21,
+    version = 22,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "StaticEquilibrium(speed: 0.001, non_static: 0.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -70,11 +72,11 @@ pub struct StaticEquilibrium {
     #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
     pub gravity: f64,
     /// What cloth resists in its plane.
-    #[param(default = Membrane::Woven, trades)]
-    pub membrane: Membrane,
+    #[param(default = MembraneModel::Woven, trades)]
+    pub membrane: MembraneModel,
     /// What cloth resists when it is folded.
-    #[param(default = Bending::Quadratic, trades)]
-    pub bending: Bending,
+    #[param(default = BendingModel::Quadratic, trades)]
+    pub bending: BendingModel,
     /// At rest, no vertex but the share `non_static` gains more than this in a step that proves
     /// rest (see `proof`).
     #[param(default = 5e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
@@ -85,8 +87,8 @@ pub struct StaticEquilibrium {
     #[param(default = 0.015, min = 0.0, max = 0.5, trades, finer = "less")]
     pub non_static: f64,
     /// Which steps prove rest.
-    #[param(default = Proof::Long, trades)]
-    pub proof: Proof,
+    #[param(default = ProofSteps::Long, trades)]
+    pub proof: ProofSteps,
     /// Vertices of the coarsest mesh, on which the garment is sewn; with `bending_continuation`, at
     /// least 700.
     #[param(default = 300, min = 20, max = 100_000, unit = "vertices", trades)]
@@ -127,8 +129,8 @@ pub struct StaticEquilibrium {
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well,
     /// which is checked, or always double. The state that is found keeps `speed` either way.
-    #[param(default = Precision::Mixed)]
-    pub precision: Precision,
+    #[param(default = FactorPrecision::Mixed)]
+    pub precision: FactorPrecision,
     /// Whether what has come to rest sleeps while few vertices still move: these settle by
     /// themselves before the whole takes its next step. Rest is proved with all either way.
     #[param(default = true)]
@@ -153,7 +155,7 @@ impl StaticEquilibrium {
         let gravity =
             phases.and_then(Phases::last_gravity).unwrap_or_else(|| Vector3::new(0.0, -self.gravity, 0.0));
         let card = collider.map(|c| c.scheme.card());
-        let setting = Setting {
+        let setting = SceneSetting {
             gravity,
             air: phases.and_then(Phases::last_air).map(engine_air),
             thickness: card.map_or(self.thickness.metres(), |c| c.thickness),
@@ -163,7 +165,8 @@ impl StaticEquilibrium {
         let friction = card.map_or(0.0, |c| c.friction);
         let surface = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
         let engine_collider = surface.as_ref().map(|surface| EngineCollider { surface, friction });
-        let mut progress = Progress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
+        let mut progress =
+            SolverProgress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
         let clock = Instant::now();
         let reversed = surely_reversed(&scene, &scene.positions);
         for name in reversed.iter().filter(|_| self.sew_through) {
@@ -216,7 +219,8 @@ impl StaticEquilibrium {
         if let Some(positions) = result.as_ref().err().and_then(StaticsError::so_far) {
             cx.so_far(self.at(garment, positions));
         }
-        let words = Words { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
+        let words =
+            MessageContext { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
         let (state, converged) = self.judge(result, &words, &reversed, cx)?;
         cx.figure("residual", state.residual, "N");
         cx.figure("non_static", state.outcome.non_static, "");
@@ -266,7 +270,7 @@ impl StaticEquilibrium {
             bending_continuation: self.bending_continuation,
             from_here: self.from_here,
             sew_through: self.sew_through,
-            long_proof: self.proof == Proof::Long,
+            long_proof: self.proof == ProofSteps::Long,
             precision: self.precision.into(),
             asleep: self.asleep,
         }
@@ -276,7 +280,7 @@ impl StaticEquilibrium {
     fn judge(
         &self,
         result: Result<Equilibrium, StaticsError>,
-        words: &Words<'_>,
+        words: &MessageContext<'_>,
         reversed: &[String],
         cx: &Context,
     ) -> Result<(Equilibrium, bool), StageError> {
@@ -328,7 +332,7 @@ impl StaticEquilibrium {
 }
 
 /// Tells the user how far the solver has come, and stops it when asked to.
-struct Progress<'a> {
+struct SolverProgress<'a> {
     cx: &'a Context,
     wanted: f64,
     /// Vertices of the garment.
@@ -336,7 +340,7 @@ struct Progress<'a> {
     steps: usize,
 }
 
-impl Progress<'_> {
+impl SolverProgress<'_> {
     fn tell(&mut self, level: &LevelReport) -> ControlFlow<()> {
         self.steps += 1;
         self.cx.work(level.nodes as f64 / self.vertices.max(1) as f64);

@@ -21,6 +21,6 @@ pub(crate) use kinds::only_joins;
 pub use lost::lost;
 pub use on_body::{both, on_body};
 pub use response::check_response;
-pub use scene::{Setting, engine_fabric, garment_of, held_of, scene_of, weld_seams};
+pub use scene::{SceneSetting, engine_fabric, garment_of, held_of, scene_of, weld_seams};
 pub use surface::SchemeSurface;
-pub(crate) use words::{Motions, Rests, Words, crossing, seam, turn_round};
+pub(crate) use words::{MessageContext, Motions, Rests, crossing, seam, turn_round};

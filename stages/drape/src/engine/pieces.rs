@@ -4,7 +4,7 @@ use toile_core::artifact::Garment;
 use toile_core::artifact::join_pairs;
 
 /// All cloth that hangs together.
-pub(super) struct Piece {
+pub(super) struct ClothPiece {
     /// Its vertices, ascending.
     pub(super) vertices: Vec<usize>,
     /// Flat, square metres.
@@ -14,12 +14,12 @@ pub(super) struct Piece {
 }
 
 /// The pieces of a garment: what hangs together by triangles, welds and seams.
-pub(super) fn pieces(garment: &Garment) -> Vec<Piece> {
+pub(super) fn pieces(garment: &Garment) -> Vec<ClothPiece> {
     let mut root = garment.weld.clone();
     let sides: Vec<[u32; 2]> = garment.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]).collect();
     join_pairs(&mut root, sides.iter().chain(garment.seams.iter().flat_map(|s| &s.pairs)));
     let mut number = vec![usize::MAX; root.len()];
-    let mut pieces: Vec<Piece> = Vec::new();
+    let mut pieces: Vec<ClothPiece> = Vec::new();
     let mut areas = vec![0.0; root.len()];
     for t in &garment.triangles {
         let [a, b, c] = t.map(|i| garment.rest[i as usize]);
@@ -29,7 +29,7 @@ pub(super) fn pieces(garment: &Garment) -> Vec<Piece> {
         let k = &mut number[r as usize];
         if *k == usize::MAX {
             *k = pieces.len();
-            pieces.push(Piece { vertices: vec![], area: areas[r as usize], is_held: false });
+            pieces.push(ClothPiece { vertices: vec![], area: areas[r as usize], is_held: false });
         }
         pieces[*k].vertices.push(v);
     }

@@ -17,7 +17,7 @@ use toile_core::artifact::{
 
 /// What a garment's scene takes from elsewhere than the garment.
 #[derive(Debug, Clone, Copy)]
-pub struct Setting {
+pub struct SceneSetting {
     /// m/s².
     pub gravity: Vector3<f64>,
     /// What it moves in.
@@ -32,7 +32,7 @@ pub struct Setting {
 ///
 /// # Errors
 /// A fabric whose curves the engine does not take.
-pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageError> {
+pub fn scene_of(garment: &Garment, setting: &SceneSetting) -> Result<Scene, StageError> {
     let mut panels = Vec::with_capacity(garment.panels.len());
     for p in &garment.panels {
         let material = engine_fabric(&p.fabric, setting.thickness).map_err(|e| cloth_error(&e))?;

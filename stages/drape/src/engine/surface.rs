@@ -9,7 +9,7 @@ use toile_geometry::sharp::Sharp;
 use toile_geometry::signed_distance::Nearest;
 
 /// Vertices, m, and triangles of a collider's mesh.
-type Corners<'a> = (Vec<Vector3<f64>>, &'a [[u32; 3]]);
+type ColliderMesh<'a> = (Vec<Vector3<f64>>, &'a [[u32; 3]]);
 
 /// The body of a collision scheme: one call a question, whatever the number of points.
 #[derive(Debug, Clone)]
@@ -31,7 +31,7 @@ impl<'a> SchemeSurface<'a> {
 
 impl SchemeSurface<'_> {
     /// Vertices and triangles of the body, where the scheme shows them.
-    fn mesh(&self) -> Option<Corners<'_>> {
+    fn mesh(&self) -> Option<ColliderMesh<'_>> {
         let surface = self.scheme.surface()?;
         Some((surface.positions.iter().map(|p| p.coords).collect(), surface.triangles))
     }

@@ -68,7 +68,7 @@ pub(super) fn tell(girths: &BTreeMap<String, GirthFigures>, cx: &Context) {
 
 /// A triangle in a slice: the two mesh edges that it crosses, by their welded vertices, where, and
 /// the flat length between.
-struct Cut {
+struct SlicedTriangle {
     edges: [[u32; 2]; 2],
     points: [Point2; 2],
     flat: f64,
@@ -94,7 +94,7 @@ fn arms(body: &Body, y: f64) -> Vec<Point2> {
 /// The flat length of the shortest closed loop of the slice at height `y` that goes around `middle`
 /// (x, z) and around none of the `arms`.
 pub fn around(garment: &Garment, y: f64, middle: Point2, arms: &[Point2]) -> Option<f64> {
-    let cuts: Vec<Cut> = garment.triangles.iter().filter_map(|t| cut(garment, *t, y)).collect();
+    let cuts: Vec<SlicedTriangle> = garment.triangles.iter().filter_map(|t| cut(garment, *t, y)).collect();
     let mut at: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
     for (k, c) in cuts.iter().enumerate() {
         c.edges.iter().for_each(|e| at.entry(*e).or_default().push(k));
@@ -117,7 +117,7 @@ pub fn around(garment: &Garment, y: f64, middle: Point2, arms: &[Point2]) -> Opt
 /// Follows a loop from a cut on: its cuts, each with the end where the loop comes in; `None` where
 /// it does not close or branches.
 fn walk(
-    cuts: &[Cut],
+    cuts: &[SlicedTriangle],
     at: &BTreeMap<[u32; 2], Vec<usize>>,
     first: usize,
     seen: &mut [bool],
@@ -142,7 +142,7 @@ fn walk(
 }
 
 /// Whether a loop winds around a place.
-fn goes_around(cuts: &[Cut], ring: &[(usize, usize)], place: Point2) -> bool {
+fn goes_around(cuts: &[SlicedTriangle], ring: &[(usize, usize)], place: Point2) -> bool {
     let turn = |&(k, enter): &(usize, usize)| {
         let (from, to) = (cuts[k].points[enter] - place, cuts[k].points[1 - enter] - place);
         (from.x * to.y - from.y * to.x).atan2(from.dot(&to))
@@ -151,7 +151,7 @@ fn goes_around(cuts: &[Cut], ring: &[(usize, usize)], place: Point2) -> bool {
 }
 
 /// What of a triangle lies in the plane at height `y`.
-fn cut(garment: &Garment, t: [u32; 3], y: f64) -> Option<Cut> {
+fn cut(garment: &Garment, t: [u32; 3], y: f64) -> Option<SlicedTriangle> {
     let above = |v: u32| garment.positions[v as usize].y >= y;
     let sides = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
     let mut crossed = sides.into_iter().filter(|&(a, b)| above(a) != above(b));
@@ -166,7 +166,7 @@ fn cut(garment: &Garment, t: [u32; 3], y: f64) -> Option<Cut> {
         ([a.min(b), a.max(b)], Point2::new(in_space.x, in_space.z), on_panel)
     });
     let [(e, p, a), (f, q, b)] = ends;
-    Some(Cut { edges: [e, f], points: [p, q], flat: (a - b).norm() })
+    Some(SlicedTriangle { edges: [e, f], points: [p, q], flat: (a - b).norm() })
 }
 
 #[cfg(test)]
@@ -174,7 +174,7 @@ fn cut(garment: &Garment, t: [u32; 3], y: f64) -> Option<Cut> {
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
-    use toile_fixtures::cloth::{Grid, garment, plain};
+    use toile_fixtures::cloth::{ClothGrid, garment, plain};
 
     const COLUMNS: usize = 200;
 
@@ -182,7 +182,7 @@ mod tests {
     /// told so.
     fn tube(sewn: bool) -> Garment {
         let flat = |x: f64, y: f64| Point2::new(0.95 * x, 0.2 * y);
-        let grid = Grid { columns: COLUMNS, rows: 4, flat, lift: |p| Point3::new(p.x, p.y, 0.0) };
+        let grid = ClothGrid { columns: COLUMNS, rows: 4, flat, lift: |p| Point3::new(p.x, p.y, 0.0) };
         let mut tube = garment(&[("skirt", &grid)], &plain(500.0, 50.0, 1e-5));
         for p in &mut tube.positions {
             let angle = p.x / 0.95 * TAU;

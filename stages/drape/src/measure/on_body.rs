@@ -77,11 +77,12 @@ pub(super) fn shortfalls(garment: &Garment, limit: f64) -> Vec<Shortfall> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use toile_fixtures::cloth::{Grid, garment, plain};
+    use toile_fixtures::cloth::{ClothGrid, garment, plain};
 
     /// Two squares of a metre, sewn together or not.
     fn worn(on_body: Vec<f64>, sewn: bool) -> Garment {
-        let grid = || Grid { columns: 1, rows: 1, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };
+        let grid =
+            || ClothGrid { columns: 1, rows: 1, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };
         let mut garment = garment(&[("front", &grid()), ("back", &grid())], &plain(500.0, 50.0, 1e-5));
         if sewn {
             let pair = [0, garment.panels[1].vertices.start as u32];

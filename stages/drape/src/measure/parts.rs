@@ -124,12 +124,12 @@ fn apart(start: &Garment, end: &Garment, edge: &[u32], other: &[u32]) -> Option<
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use toile_fixtures::cloth::{Grid, garment, plain};
+    use toile_fixtures::cloth::{ClothGrid, garment, plain};
 
     /// A band over a skirt, 20 cm wide each, with a centimetre between them.
     fn two() -> Garment {
         let lift = |p: Point2| Point3::new(0.2 * p.x, 0.2 * p.y, 0.0);
-        let grid = Grid { columns: 8, rows: 4, flat: Point2::new, lift };
+        let grid = ClothGrid { columns: 8, rows: 4, flat: Point2::new, lift };
         let mut both = garment(&[("skirt", &grid), ("band", &grid)], &plain(500.0, 50.0, 1e-5));
         let band = both.panels[1].vertices.clone();
         both.positions[band].iter_mut().for_each(|p| p.y += 0.21);

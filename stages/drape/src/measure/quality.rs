@@ -100,8 +100,8 @@ impl Measure {
         Ok(figures)
     }
 
-    fn limits(&self) -> shortfalls::Limits {
-        shortfalls::Limits {
+    fn limits(&self) -> shortfalls::FigureLimits {
+        shortfalls::FigureLimits {
             gap: self.max_gap,
             area_error: self.max_area_error,
             outline_error: self.max_outline_error,

@@ -9,7 +9,7 @@ use toile_core::prelude::*;
 const NAMED: usize = 3;
 
 /// The limits.
-pub(super) struct Limits {
+pub(super) struct FigureLimits {
     pub(super) gap: Length,
     pub(super) area_error: f64,
     pub(super) outline_error: f64,
@@ -17,7 +17,7 @@ pub(super) struct Limits {
     pub(super) body_crossings: usize,
 }
 
-impl Limits {
+impl FigureLimits {
     /// The limits that are missed, with the errors of the panels and the strain (99th percentile)
     /// but for what the body stretches.
     pub(super) fn missed(
@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     fn missed(errors: &[(&str, f64)]) -> Vec<String> {
-        let limits = Limits {
+        let limits = FigureLimits {
             gap: Length::mm(1.0),
             area_error: 0.01,
             outline_error: 0.01,

@@ -26,7 +26,7 @@ const DRAWN: f64 = 0.02;
 const FADES: f64 = 0.005;
 
 /// An edge of a garment.
-struct Edge {
+struct StrainedEdge {
     vertices: [u32; 2],
     /// Strain, positive where it is longer than it was cut.
     strain: f64,
@@ -36,7 +36,7 @@ struct Edge {
 
 /// The edges of a garment, and how far the body stretches each triangle.
 pub struct Tight {
-    edges: Vec<Edge>,
+    edges: Vec<StrainedEdge>,
     /// By the vertices of the taut triangles: the greatest stretch, as a strain.
     taut: BTreeMap<[u32; 3], f64>,
 }
@@ -59,7 +59,7 @@ impl Tight {
         }
         let edge = |(vertices, flat): ([u32; 2], f64)| {
             let strain = length(garment, vertices) / flat - 1.0;
-            Edge { vertices, strain, taut: most.get(&vertices).is_some_and(|s| strain.abs() <= *s) }
+            StrainedEdge { vertices, strain, taut: most.get(&vertices).is_some_and(|s| strain.abs() <= *s) }
         };
         Self { edges: garment.flat_lengths().into_iter().map(edge).collect(), taut }
     }
@@ -90,7 +90,7 @@ impl Tight {
     /// The panel that the body stretches most, and by how much (99th percentile of its taut edges).
     pub fn tightest<'g>(&self, garment: &'g Garment) -> Option<(&'g str, f64)> {
         let of = |p: &'g GarmentPanel| {
-            let mine = |e: &&Edge| e.taut && p.vertices.contains(&(e.vertices[0] as usize));
+            let mine = |e: &&StrainedEdge| e.taut && p.vertices.contains(&(e.vertices[0] as usize));
             (p.name.as_str(), p99(self.edges.iter().filter(mine).map(|e| e.strain)))
         };
         garment.panels.iter().map(of).reduce(|a, b| if b.1 > a.1 { b } else { a })
@@ -181,13 +181,13 @@ fn length(garment: &Garment, [a, b]: [u32; 2]) -> f64 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use toile_fixtures::cloth::{Capsules, Grid, garment, plain};
+    use toile_fixtures::cloth::{Capsules, ClothGrid, garment, plain};
 
     /// A sheet of 20 cm, stretched along x and a little narrower, so high above a round beam of 1 m
     /// radius that it lies on its top.
     fn sheet(stretch: f64, height: f64) -> (Garment, Collider) {
         let flat = |x: f64, y: f64| Point2::new(0.2 * x, 0.2 * y);
-        let grid = Grid { columns: 8, rows: 8, flat, lift: |p| Point3::new(p.x, 0.0, p.y) };
+        let grid = ClothGrid { columns: 8, rows: 8, flat, lift: |p| Point3::new(p.x, 0.0, p.y) };
         let mut sheet = garment(&[("front", &grid)], &plain(500.0, 50.0, 1e-5));
         for p in &mut sheet.positions {
             let (x, z) = ((p.x - 0.1) * (1.0 + stretch), (p.z - 0.1) * (1.0 - 0.5 * stretch));

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 use toile_core::prelude::*;
 use toile_core::{Cancel, Event, Listener};
-use toile_fixtures::cloth::{Capsules, Grid, garment, plain, vest};
+use toile_fixtures::cloth::{Capsules, ClothGrid, garment, plain, vest};
 
 fn sew(g: &Garment, body: Option<&Collider>) -> Result<Garment, StageError> {
     SpringStitcher::default().run(g, body, &Context::quiet())
@@ -15,7 +15,7 @@ fn sew(g: &Garment, body: Option<&Collider>) -> Result<Garment, StageError> {
 /// Two sheets 20 cm wide before and behind a body, sewn along both sides.
 fn tube(depth: f64, fabric: &Arc<Fabric>) -> Garment {
     const SIZE: (usize, usize) = (12, 8);
-    let grid = |lift| Grid {
+    let grid = |lift| ClothGrid {
         columns: SIZE.0,
         rows: SIZE.1,
         flat: |u, v| Point2::new(0.2 * (u - 0.5), 0.12 * (v - 0.5)),

@@ -1,7 +1,7 @@
 //! What pattern care takes care of.
 
 use crate::error::FlattenError;
-use crate::newton::NewtonOptions;
+use crate::newton::StoppingLimits;
 
 /// What is taken care of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +22,7 @@ pub struct CareOptions {
     /// alone. Below 0.2.
     pub mirror_outline: f64,
     /// When the solver stops.
-    pub newton: NewtonOptions,
+    pub newton: StoppingLimits,
 }
 
 impl Default for CareOptions {
@@ -33,7 +33,7 @@ impl Default for CareOptions {
             corner: 30.0,
             mirror: 1e-4,
             mirror_outline: 0.05,
-            newton: NewtonOptions::default(),
+            newton: StoppingLimits::default(),
         }
     }
 }

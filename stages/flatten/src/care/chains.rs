@@ -1,6 +1,6 @@
 //! Boundary loops cut into chains at corners and seam ends.
 
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::Point2;
 use std::f64::consts::PI;
 
@@ -8,7 +8,12 @@ use std::f64::consts::PI;
 /// line by more than `corner` (radians), and at `ends`. Chains are open, both ends in them, the
 /// piece on their left; a loop without any cut is one chain that ends where it begins.
 #[must_use]
-pub fn boundary_chains(surface: &Surface, flat: &[Point2<f64>], ends: &[u32], corner: f64) -> Vec<Vec<u32>> {
+pub fn boundary_chains(
+    surface: &PieceSurface,
+    flat: &[Point2<f64>],
+    ends: &[u32],
+    corner: f64,
+) -> Vec<Vec<u32>> {
     let mut is_end = corner_vertices(surface, flat, corner);
     ends.iter().for_each(|&v| is_end[v as usize] = true);
     let cuts = |v: u32| is_end[v as usize];
@@ -17,7 +22,7 @@ pub fn boundary_chains(surface: &Surface, flat: &[Point2<f64>], ends: &[u32], co
 
 /// For each vertex whether it is a boundary vertex with an inner angle that differs from a straight
 /// line by more than `corner`.
-pub(super) fn corner_vertices(surface: &Surface, flat: &[Point2<f64>], corner: f64) -> Vec<bool> {
+pub(super) fn corner_vertices(surface: &PieceSurface, flat: &[Point2<f64>], corner: f64) -> Vec<bool> {
     let angles = inner_angles(surface, flat);
     let mut is_corner = vec![false; flat.len()];
     for &v in surface.loops().iter().flatten() {
@@ -41,7 +46,7 @@ fn cut_loop(vertices: &[u32], cuts: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
 }
 
 /// The sum of the angles of the triangles at each vertex.
-fn inner_angles(surface: &Surface, flat: &[Point2<f64>]) -> Vec<f64> {
+fn inner_angles(surface: &PieceSurface, flat: &[Point2<f64>]) -> Vec<f64> {
     let mut angles = vec![0.0; flat.len()];
     for corners in surface.triangles() {
         for k in 0..3 {

@@ -2,7 +2,7 @@
 //! ray.
 
 use crate::linear::Graph;
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::{Point2, Vector2};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -23,7 +23,7 @@ pub(super) struct Ways<'a> {
 const STEPS: f64 = 1e9;
 
 impl<'a> Ways<'a> {
-    pub(super) fn new(surface: &Surface, flat: &'a [Point2<f64>]) -> Self {
+    pub(super) fn new(surface: &PieceSurface, flat: &'a [Point2<f64>]) -> Self {
         let graph = Graph::new(flat.len(), surface.triangles(), &[]);
         let (starts, neighbours) = graph.both_ways();
         let mut on_boundary = vec![false; flat.len()];

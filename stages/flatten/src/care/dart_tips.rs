@@ -7,7 +7,7 @@
 
 use super::dart_path::Ways;
 use crate::distortion::TriangleStrain;
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use std::f64::consts::TAU;
 
 /// The neighbourhood's radius as a share of the root of the area.
@@ -17,7 +17,7 @@ const RADIUS: f64 = 0.03;
 const MOST_ROUNDS: usize = 400;
 
 /// Values at vertices, with the area that each stands for.
-struct Field<'a> {
+struct VertexValues<'a> {
     ways: &'a Ways<'a>,
     areas: Vec<f64>,
     rounds: usize,
@@ -25,8 +25,8 @@ struct Field<'a> {
 
 /// The inner vertices of most spread strain and of most spread curvature, and the largest spread
 /// strain.
-pub(super) fn tips(surface: &Surface, ways: &Ways<'_>, strains: &[TriangleStrain]) -> (Vec<u32>, f64) {
-    let field = Field::new(surface, ways);
+pub(super) fn tips(surface: &PieceSurface, ways: &Ways<'_>, strains: &[TriangleStrain]) -> (Vec<u32>, f64) {
+    let field = VertexValues::new(surface, ways);
     let energy =
         field.spread(gathered(surface, |t| strains[t].principal.powi(2) * surface.area_vector(t).norm()));
     let curvature = field.spread(missing_angles(surface, ways));
@@ -36,8 +36,8 @@ pub(super) fn tips(surface: &Surface, ways: &Ways<'_>, strains: &[TriangleStrain
     (tips.into_iter().flatten().collect(), largest)
 }
 
-impl<'a> Field<'a> {
-    fn new(surface: &Surface, ways: &'a Ways<'a>) -> Self {
+impl<'a> VertexValues<'a> {
+    fn new(surface: &PieceSurface, ways: &'a Ways<'a>) -> Self {
         let areas = gathered(surface, |t| surface.area_vector(t).norm());
         let edge = (surface.area() / surface.triangles().len() as f64).sqrt() * 1.5;
         let radius = RADIUS * surface.area().sqrt();
@@ -61,7 +61,7 @@ impl<'a> Field<'a> {
 }
 
 /// A third of each triangle's value at each of its corners.
-fn gathered(surface: &Surface, of: impl Fn(usize) -> f64) -> Vec<f64> {
+fn gathered(surface: &PieceSurface, of: impl Fn(usize) -> f64) -> Vec<f64> {
     let mut sums = vec![0.0; surface.positions().len()];
     for (t, corners) in surface.triangles().iter().enumerate() {
         corners.iter().for_each(|&v| sums[v as usize] += of(t) / 3.0);
@@ -70,7 +70,7 @@ fn gathered(surface: &Surface, of: impl Fn(usize) -> f64) -> Vec<f64> {
 }
 
 /// A full turn less the angles around each inner vertex; 0 on the boundary.
-fn missing_angles(surface: &Surface, ways: &Ways<'_>) -> Vec<f64> {
+fn missing_angles(surface: &PieceSurface, ways: &Ways<'_>) -> Vec<f64> {
     let x = surface.positions();
     let mut missing = vec![TAU; x.len()];
     for corners in surface.triangles() {

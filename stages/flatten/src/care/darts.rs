@@ -15,9 +15,9 @@ use super::mirror::{MirrorPair, mirror_pairs};
 use crate::distortion::distortion;
 use crate::error::{FlattenError, SurfaceError};
 use crate::flatteners::{Flattening, Placement};
-use crate::islands::{Piece, Pieces, islands_by_seams};
-use crate::newton::{NewtonOptions, chain_length};
-use crate::surface::Surface;
+use crate::islands::{SurfacePiece, SurfacePieces, islands_by_seams};
+use crate::newton::{StoppingLimits, chain_length};
+use crate::surface::PieceSurface;
 use nalgebra::{Point2, Vector2};
 
 /// A proposed cut.
@@ -45,12 +45,12 @@ pub struct DartOptions {
     /// Most cuts, 1 or more.
     pub most: usize,
     /// When the solver stops.
-    pub newton: NewtonOptions,
+    pub newton: StoppingLimits,
 }
 
 impl Default for DartOptions {
     fn default() -> Self {
-        Self { max_strain: 0.015, least_saving: 0.25, most: 8, newton: NewtonOptions::default() }
+        Self { max_strain: 0.015, least_saving: 0.25, most: 8, newton: StoppingLimits::default() }
     }
 }
 
@@ -70,15 +70,15 @@ const LEAST_OF_FIRST: f64 = 0.01;
 const SYMMETRIC: f64 = 1e-3;
 
 /// A piece with its cuts so far.
-struct Stage {
-    piece: Piece,
+struct CutPiece {
+    piece: SurfacePiece,
     flat: Flattening,
 }
 
 /// A try: its paths on the uncut surface, what it gives, its energy, and its energy with the bonus.
-struct Candidate {
+struct DartCandidate {
     paths: Vec<Vec<u32>>,
-    stage: Stage,
+    stage: CutPiece,
     rated: f64,
 }
 
@@ -87,14 +87,14 @@ struct Candidate {
 /// # Errors
 /// [`FlattenError::InvalidParameter`], and those of the flattener.
 pub fn propose_darts(
-    surface: &Surface,
+    surface: &PieceSurface,
     objective: &Objective,
     placement: &Placement,
     options: DartOptions,
 ) -> Result<Vec<Dart>, FlattenError> {
     options.check()?;
     placement.check(surface)?;
-    let search = Search::new(surface, objective, placement, options)?;
+    let search = DartSearch::new(surface, objective, placement, options)?;
     let mut stage = search.stage(&[])?;
     let first = stage.flat.report.energy;
     let (mut darts, mut cuts): (Vec<Dart>, Vec<Vec<u32>>) = (Vec::new(), Vec::new());
@@ -123,12 +123,12 @@ pub fn propose_darts(
 /// # Errors
 /// [`SurfaceError::NoSuchEdge`] if a path leaves the edges, [`SurfaceError::Disconnected`] if the
 /// cuts divide the piece.
-pub fn cut_darts(surface: &Surface, darts: &[Dart]) -> Result<Pieces, SurfaceError> {
+pub fn cut_darts(surface: &PieceSurface, darts: &[Dart]) -> Result<SurfacePieces, SurfaceError> {
     let paths: Vec<_> = darts.iter().map(|d| d.path.clone()).collect();
     cut(surface, &paths)
 }
 
-fn cut(surface: &Surface, paths: &[Vec<u32>]) -> Result<Pieces, SurfaceError> {
+fn cut(surface: &PieceSurface, paths: &[Vec<u32>]) -> Result<SurfacePieces, SurfaceError> {
     let edges: Vec<[u32; 2]> = paths.iter().flat_map(|p| p.windows(2).map(|w| [w[0], w[1]])).collect();
     let pieces = islands_by_seams(surface.positions(), surface.triangles(), &edges)?;
     match pieces.pieces.get(1) {
@@ -156,17 +156,17 @@ impl DartOptions {
     }
 }
 
-struct Search<'a> {
-    surface: &'a Surface,
+struct DartSearch<'a> {
+    surface: &'a PieceSurface,
     objective: &'a Objective,
     placement: &'a Placement,
     options: DartOptions,
     mirror: Option<MirrorPair>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> DartSearch<'a> {
     fn new(
-        surface: &'a Surface,
+        surface: &'a PieceSurface,
         objective: &'a Objective,
         placement: &'a Placement,
         options: DartOptions,
@@ -177,28 +177,28 @@ impl<'a> Search<'a> {
     }
 
     /// Cuts and flattens.
-    fn stage(&self, paths: &[Vec<u32>]) -> Result<Stage, FlattenError> {
+    fn stage(&self, paths: &[Vec<u32>]) -> Result<CutPiece, FlattenError> {
         let mut pieces = cut(self.surface, paths)?;
         let piece = pieces.pieces.swap_remove(0);
         let grain = self.placement.grain.on_piece(&piece.vertices, &piece.triangles);
         let grain = grain.unwrap_or_else(|| self.placement.grain.clone());
         let placement = Placement { grain, ..self.placement.clone() };
         let flat = self.objective.flatten(&piece.surface, self.options.newton, &placement)?;
-        Ok(Stage { piece, flat })
+        Ok(CutPiece { piece, flat })
     }
 
-    fn strain(&self, stage: &Stage) -> Result<f64, FlattenError> {
+    fn strain(&self, stage: &CutPiece) -> Result<f64, FlattenError> {
         let table = distortion(&stage.piece.surface, &stage.flat.points)?;
         let ways = Ways::new(&stage.piece.surface, &stage.flat.points);
         Ok(tips(&stage.piece.surface, &ways, &table.triangles).1)
     }
 
     /// The cut that leaves least energy.
-    fn best(&self, stage: &Stage, cuts: &[Vec<u32>]) -> Result<Option<Candidate>, FlattenError> {
+    fn best(&self, stage: &CutPiece, cuts: &[Vec<u32>]) -> Result<Option<DartCandidate>, FlattenError> {
         let table = distortion(&stage.piece.surface, &stage.flat.points)?;
         let ways = Ways::new(&stage.piece.surface, &stage.flat.points);
         let (tips, _) = tips(&stage.piece.surface, &ways, &table.triangles);
-        let mut best: Option<Candidate> = None;
+        let mut best: Option<DartCandidate> = None;
         for tip in tips {
             for way in short_ways(&ways, tip, &stage.flat.points) {
                 let along = grain_share(&way, &stage.flat.points);
@@ -214,7 +214,13 @@ impl<'a> Search<'a> {
 
     /// A way and its mirror image, cut and flattened; none if that divides the piece or cannot be
     /// flattened.
-    fn candidate(&self, stage: &Stage, cuts: &[Vec<u32>], way: Vec<u32>, along: f64) -> Option<Candidate> {
+    fn candidate(
+        &self,
+        stage: &CutPiece,
+        cuts: &[Vec<u32>],
+        way: Vec<u32>,
+        along: f64,
+    ) -> Option<DartCandidate> {
         let mut paths = vec![way];
         if let Some(image) = self.image(&paths[0]).filter(|i| apart(i, &paths[0])) {
             paths.push(image);
@@ -223,7 +229,7 @@ impl<'a> Search<'a> {
         let next = self.stage(&all).ok()?;
         let saved = stage.flat.report.energy - next.flat.report.energy;
         let rated = saved * (1.0 + GRAIN_BONUS * along);
-        Some(Candidate { paths, stage: next, rated })
+        Some(DartCandidate { paths, stage: next, rated })
     }
 
     fn image(&self, way: &[u32]) -> Option<Vec<u32>> {

@@ -4,42 +4,42 @@
 //! other line is nearest, so that nothing is strained along the edge for the sake of its spacing.
 //! Cost O(n^2) for n vertices of each outline.
 
-use super::outline::{Correspondence, Motion, Outline};
+use super::outline::{Correspondence, MeasuredOutline, RigidMotion};
 use nalgebra::{Point2, Vector2};
 
 /// Where a vertex should lie, and whether it must lie there.
 pub(super) type Target = (Point2<f64>, bool);
 
 /// The outlines of a pair, laid over each other.
-pub(super) struct Laid {
+pub(super) struct LaidPair {
     /// Their pieces.
     pub(super) pieces: [usize; 2],
     /// The first outline.
-    pub(super) a: Outline,
+    pub(super) a: MeasuredOutline,
     /// The mirrored second outline in the plane of the first.
-    pub(super) b: Outline,
+    pub(super) b: MeasuredOutline,
     /// Corners and seam ends of both.
     pub(super) ends: [Vec<usize>; 2],
     /// How near they must come.
     pub(super) near: f64,
     /// What has laid the mirrored second over the first.
-    pub(super) motion: Motion,
+    pub(super) motion: RigidMotion,
     /// Which length of the one is which of the other.
     pub(super) map: Correspondence,
 }
 
 /// One of the two outlines.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum PairSide {
     First,
     Second,
 }
 
-impl Side {
+impl PairSide {
     fn other(self) -> Self {
         match self {
-            Side::First => Side::Second,
-            Side::Second => Side::First,
+            PairSide::First => PairSide::Second,
+            PairSide::Second => PairSide::First,
         }
     }
 }
@@ -57,7 +57,7 @@ pub(super) enum Pull {
     Fit,
 }
 
-impl Laid {
+impl LaidPair {
     /// Whether the outlines are near enough to be called mirror images.
     pub(super) fn is_near(&self) -> bool {
         self.distance() <= self.near
@@ -65,22 +65,23 @@ impl Laid {
 
     /// The largest distance of a vertex of either outline from the other.
     pub(super) fn distance(&self) -> f64 {
-        let farthest =
-            |x: &Outline, y: &Outline| x.places().iter().map(|p| y.distance(p)).fold(0.0, f64::max);
+        let farthest = |x: &MeasuredOutline, y: &MeasuredOutline| {
+            x.places().iter().map(|p| y.distance(p)).fold(0.0, f64::max)
+        };
         farthest(&self.a, &self.b).max(farthest(&self.b, &self.a))
     }
 
     /// For each vertex of an outline, in its own plane and order, where it should lie, and whether
     /// it must lie there: corners and seam ends, and what stands for those of the other. The first
     /// is drawn to the mean of both, the second onto the first.
-    pub(super) fn targets(&self, side: Side, pull: Pull) -> Vec<Target> {
+    pub(super) fn targets(&self, side: PairSide, pull: Pull) -> Vec<Target> {
         let targets = self.on_other(side, pull);
         match side {
-            Side::First => {
+            PairSide::First => {
                 let mean = |(t, p): (&Target, &Point2<f64>)| (nalgebra::center(&t.0, p), t.1);
                 targets.iter().zip(self.a.places()).map(mean).collect()
             }
-            Side::Second => {
+            PairSide::Second => {
                 let own_plane = |&(p, end): &Target| {
                     let p = self.motion.undone(&p);
                     (Point2::new(-p.x, p.y), end)
@@ -91,7 +92,7 @@ impl Laid {
     }
 
     /// The same on the line of the other outline, in the common plane.
-    fn on_other(&self, side: Side, pull: Pull) -> Vec<Target> {
+    fn on_other(&self, side: PairSide, pull: Pull) -> Vec<Target> {
         let [own, other] = self.own_and_other(side);
         let count = own.places().len();
         let mut targets: Vec<Target> = match pull {
@@ -114,25 +115,25 @@ impl Laid {
         targets
     }
 
-    fn own_and_other(&self, side: Side) -> [&Outline; 2] {
+    fn own_and_other(&self, side: PairSide) -> [&MeasuredOutline; 2] {
         match side {
-            Side::First => [&self.a, &self.b],
-            Side::Second => [&self.b, &self.a],
+            PairSide::First => [&self.a, &self.b],
+            PairSide::Second => [&self.b, &self.a],
         }
     }
 
     /// The length on the other outline for one on this.
-    fn across(&self, side: Side, arc: f64) -> f64 {
+    fn across(&self, side: PairSide, arc: f64) -> f64 {
         match side {
-            Side::First => self.map.forward(arc),
-            Side::Second => self.map.back(arc),
+            PairSide::First => self.map.forward(arc),
+            PairSide::Second => self.map.back(arc),
         }
     }
 }
 
 /// By how much vertices of one outline are moved so that their edges cut off half as much of the
 /// other.
-fn moved_out(own: &Outline, other: &Outline) -> Vec<Vector2<f64>> {
+fn moved_out(own: &MeasuredOutline, other: &MeasuredOutline) -> Vec<Vector2<f64>> {
     let mut shifts = vec![Vector2::zeros(); own.places().len()];
     for p in other.places() {
         let (edge, nearest) = own.nearest_edge(p);

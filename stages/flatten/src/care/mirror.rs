@@ -5,8 +5,8 @@
 //! meet a vertex, one to one, within a tolerance. Then both flat pieces become the mean of the one
 //! and the mirrored other, laid over each other by the best rigid motion. Cost O(n log n) a pair.
 
-use crate::islands::Piece;
-use crate::surface::Surface;
+use crate::islands::SurfacePiece;
+use crate::surface::PieceSurface;
 use nalgebra::{Matrix3, Point2, Point3, Rotation2, Vector2, Vector3};
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub struct MirrorPair {
 /// All pairs, each piece in one at most; `tolerance` is a share of the diagonal of a piece's box,
 /// such as 0.0001.
 #[must_use]
-pub fn mirror_pairs(pieces: &[Piece], tolerance: f64) -> Vec<MirrorPair> {
+pub fn mirror_pairs(pieces: &[SurfacePiece], tolerance: f64) -> Vec<MirrorPair> {
     let mut taken = vec![false; pieces.len()];
     let mut pairs = Vec::new();
     for a in 0..pieces.len() {
@@ -43,7 +43,7 @@ pub fn mirror_pairs(pieces: &[Piece], tolerance: f64) -> Vec<MirrorPair> {
     pairs
 }
 
-fn partners(a: &Surface, b: &Surface, same: bool, tolerance: f64) -> Option<Vec<u32>> {
+fn partners(a: &PieceSurface, b: &PieceSurface, same: bool, tolerance: f64) -> Option<Vec<u32>> {
     if a.positions().len() != b.positions().len() || a.triangles().len() != b.triangles().len() {
         return None;
     }
@@ -60,8 +60,8 @@ fn partners(a: &Surface, b: &Surface, same: bool, tolerance: f64) -> Option<Vec<
 
 /// Pairs the mirrored vertices of `a` with those of `b`, one to one.
 fn match_vertices(
-    a: &Surface,
-    b: &Surface,
+    a: &PieceSurface,
+    b: &PieceSurface,
     middle: &Point3<f64>,
     n: &Vector3<f64>,
     size: f64,
@@ -88,7 +88,7 @@ fn match_vertices(
 }
 
 /// Whether every triangle of `a` is one of `b`.
-fn maps_triangles(a: &Surface, b: &Surface, partner: &[u32]) -> bool {
+fn maps_triangles(a: &PieceSurface, b: &PieceSurface, partner: &[u32]) -> bool {
     let sorted = |mut t: [u32; 3]| {
         t.sort_unstable();
         t
@@ -100,19 +100,19 @@ fn maps_triangles(a: &Surface, b: &Surface, partner: &[u32]) -> bool {
     images == others
 }
 
-fn centre(surface: &Surface) -> Vector3<f64> {
+fn centre(surface: &PieceSurface) -> Vector3<f64> {
     let sum = surface.positions().iter().fold(Vector3::zeros(), |s, p| s + p.coords);
     sum / surface.positions().len() as f64
 }
 
-fn diagonal(surface: &Surface) -> f64 {
+fn diagonal(surface: &PieceSurface) -> f64 {
     let first = surface.positions()[0];
     let (low, high) = surface.positions().iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
     (high - low).norm()
 }
 
 /// The axes of inertia.
-fn axes(surface: &Surface, centre: &Vector3<f64>) -> [Vector3<f64>; 3] {
+fn axes(surface: &PieceSurface, centre: &Vector3<f64>) -> [Vector3<f64>; 3] {
     let spread = surface.positions().iter().fold(Matrix3::zeros(), |sum, p| {
         let d = p.coords - centre;
         sum + d * d.transpose()

@@ -1,10 +1,12 @@
 //! Which energy a piece is solved for again.
 
-use crate::energy::{Arap, Energy, Springs, SymmetricDirichlet, Woven, WovenStiffness};
+use crate::energy::{
+    ArapEnergy, EnergyDensity, SpringEnergy, SymmetricDirichletEnergy, WovenEnergy, WovenStiffness,
+};
 use crate::error::FlattenError;
 use crate::flatteners::{ArapOptions, Flattening, Placement, arap, springs, symmetric_dirichlet, woven};
-use crate::newton::NewtonOptions;
-use crate::surface::Surface;
+use crate::newton::StoppingLimits;
+use crate::surface::PieceSurface;
 
 /// A flattener by its energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +28,8 @@ impl Objective {
     /// Those of the flattener.
     pub fn flatten(
         &self,
-        surface: &Surface,
-        newton: NewtonOptions,
+        surface: &PieceSurface,
+        newton: StoppingLimits,
         placement: &Placement,
     ) -> Result<Flattening, FlattenError> {
         match self {
@@ -38,12 +40,12 @@ impl Objective {
         }
     }
 
-    pub(crate) fn energy(&self, surface: &Surface) -> Result<Box<dyn Energy>, FlattenError> {
+    pub(crate) fn energy(&self, surface: &PieceSurface) -> Result<Box<dyn EnergyDensity>, FlattenError> {
         Ok(match self {
-            Self::Arap => Box::new(Arap),
-            Self::SymmetricDirichlet => Box::new(SymmetricDirichlet),
-            Self::Springs => Box::new(Springs::new(surface)),
-            Self::Woven(stiffness) => Box::new(Woven::new(*stiffness)?),
+            Self::Arap => Box::new(ArapEnergy),
+            Self::SymmetricDirichlet => Box::new(SymmetricDirichletEnergy),
+            Self::Springs => Box::new(SpringEnergy::new(surface)),
+            Self::Woven(stiffness) => Box::new(WovenEnergy::new(*stiffness)?),
         })
     }
 }

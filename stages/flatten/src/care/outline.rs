@@ -12,12 +12,12 @@ const SAMPLES: usize = 128;
 
 /// A closed line, counter-clockwise, with the length up to each of its points.
 #[derive(Debug, Clone)]
-pub(super) struct Outline {
+pub(super) struct MeasuredOutline {
     places: Vec<Point2<f64>>,
     arcs: Vec<f64>,
 }
 
-impl Outline {
+impl MeasuredOutline {
     pub(super) fn new(places: Vec<Point2<f64>>) -> Self {
         let mut arcs = vec![0.0];
         let mut gone = 0.0;
@@ -81,7 +81,7 @@ impl Outline {
         if is_next { next % self.places.len() } else { next - 1 }
     }
 
-    pub(super) fn moved(&self, motion: &Motion) -> Self {
+    pub(super) fn moved(&self, motion: &RigidMotion) -> Self {
         Self { places: self.places.iter().map(|p| motion.of(p)).collect(), arcs: self.arcs.clone() }
     }
 
@@ -92,13 +92,13 @@ impl Outline {
 
 /// A rigid motion.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Motion {
+pub(super) struct RigidMotion {
     from: Vector2<f64>,
     turn: Rotation2<f64>,
     to: Vector2<f64>,
 }
 
-impl Motion {
+impl RigidMotion {
     pub(super) fn of(&self, p: &Point2<f64>) -> Point2<f64> {
         Point2::from(self.turn * (p.coords - self.from) + self.to)
     }
@@ -111,7 +111,7 @@ impl Motion {
     /// The motion after one step that brings the moved `second` nearer to the points of `first`:
     /// least squares of the distances across its line, so that long edges may slide along each
     /// other (Chen and Medioni 1992).
-    pub(super) fn nearer(&self, first: &Outline, second: &Outline) -> Self {
+    pub(super) fn nearer(&self, first: &MeasuredOutline, second: &MeasuredOutline) -> Self {
         let moved = second.moved(self);
         let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
         for p in first.places() {
@@ -133,7 +133,7 @@ impl Motion {
 }
 
 /// The motion that lays `q` over `p`, point by point, with the least sum of squared distances.
-pub(super) fn fit(p: &[Point2<f64>], q: &[Point2<f64>]) -> Motion {
+pub(super) fn fit(p: &[Point2<f64>], q: &[Point2<f64>]) -> RigidMotion {
     let middle =
         |s: &[Point2<f64>]| s.iter().fold(Vector2::zeros(), |m, p| m + p.coords) / s.len().max(1) as f64;
     let (to, from) = (middle(p), middle(q));
@@ -141,12 +141,12 @@ pub(super) fn fit(p: &[Point2<f64>], q: &[Point2<f64>]) -> Motion {
         let (p, q) = (p.coords - to, q.coords - from);
         sum + Vector2::new(q.dot(&p), q.perp(&p))
     });
-    Motion { from, turn: Rotation2::new(sum.y.atan2(sum.x)), to }
+    RigidMotion { from, turn: Rotation2::new(sum.y.atan2(sum.x)), to }
 }
 
 /// The motion that lays `b` over `a` but for the spacing of the samples, and the share of its
 /// length where `a` begins on it.
-pub(super) fn align(a: &Outline, b: &Outline) -> (Motion, f64) {
+pub(super) fn align(a: &MeasuredOutline, b: &MeasuredOutline) -> (RigidMotion, f64) {
     let (p, q) = (a.samples(), b.samples());
     let middle = |s: &[Point2<f64>]| s.iter().fold(Vector2::zeros(), |m, p| m + p.coords) / SAMPLES as f64;
     let (to, from) = (middle(&p), middle(&q));
@@ -176,7 +176,13 @@ pub(super) struct Correspondence {
 impl Correspondence {
     /// From points of both outlines (already laid over each other) that may be knots, those that
     /// must first, and the shift of [`align`].
-    pub(super) fn new(a: &Outline, b: &Outline, points: &[[Vec<usize>; 2]], shift: f64, reach: f64) -> Self {
+    pub(super) fn new(
+        a: &MeasuredOutline,
+        b: &MeasuredOutline,
+        points: &[[Vec<usize>; 2]],
+        shift: f64,
+        reach: f64,
+    ) -> Self {
         let rounds = [a.length(), b.length()];
         let spacing = rounds[0] / a.places.len() as f64 + rounds[1] / b.places.len() as f64;
         let mut knots: Vec<[f64; 2]> = Vec::new();
@@ -188,7 +194,7 @@ impl Correspondence {
         // A corner that the other outline does not have takes its nearest vertex, away from other
         // knots.
         let [points_a, points_b] = points.last().map_or([&[][..]; 2], |p| [&p[0], &p[1]]);
-        let all = |x: &Outline| (0..x.places.len()).collect::<Vec<_>>();
+        let all = |x: &MeasuredOutline| (0..x.places.len()).collect::<Vec<_>>();
         let singles_a =
             points_a.iter().filter_map(|&i| Some([a.arc(i), b.arc(nearest(a, i, b, &all(b), reach)?)]));
         let singles_b =
@@ -242,7 +248,12 @@ impl Correspondence {
 }
 
 /// Points of both lists that are nearest to each other, by their lengths.
-fn mutual_pairs(a: &Outline, b: &Outline, points: &[Vec<usize>; 2], reach: f64) -> Vec<[f64; 2]> {
+fn mutual_pairs(
+    a: &MeasuredOutline,
+    b: &MeasuredOutline,
+    points: &[Vec<usize>; 2],
+    reach: f64,
+) -> Vec<[f64; 2]> {
     let pairs = points[0].iter().filter_map(|&i| {
         let j = nearest(a, i, b, &points[1], reach)?;
         (nearest(b, j, a, &points[0], reach) == Some(i)).then(|| [a.arc(i), b.arc(j)])
@@ -251,7 +262,13 @@ fn mutual_pairs(a: &Outline, b: &Outline, points: &[Vec<usize>; 2], reach: f64) 
 }
 
 /// The point of `y` among `others` that is nearest to point `i` of `x`, if it is within reach.
-fn nearest(x: &Outline, i: usize, y: &Outline, others: &[usize], reach: f64) -> Option<usize> {
+fn nearest(
+    x: &MeasuredOutline,
+    i: usize,
+    y: &MeasuredOutline,
+    others: &[usize],
+    reach: f64,
+) -> Option<usize> {
     let distance = |j: &usize| (x.places[i] - y.places[*j]).norm();
     let nearest = others.iter().copied().min_by(|j, k| distance(j).total_cmp(&distance(k)));
     nearest.filter(|j| distance(j) <= reach)

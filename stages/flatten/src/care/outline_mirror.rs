@@ -9,13 +9,13 @@
 //! piece.
 
 use super::chains::corner_vertices;
-use super::laid::{Laid, Pull, Side};
-use super::outline::{Correspondence, Outline, align, fit};
+use super::laid::{LaidPair, PairSide, Pull};
+use super::outline::{Correspondence, MeasuredOutline, align, fit};
 use crate::error::FlattenError;
 use crate::flatteners::Flattening;
-use crate::islands::Pieces;
-use crate::newton::Term;
-use crate::surface::Surface;
+use crate::islands::SurfacePieces;
+use crate::newton::QuadraticTerm;
+use crate::surface::PieceSurface;
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 /// Two pieces whose outlines are mirror images, nearly before and exactly after.
@@ -32,7 +32,7 @@ pub struct OutlinePair {
 }
 
 /// The mirror plane of a garment: a point and the normal.
-type Plane = (Point3<f64>, Vector3<f64>);
+type MirrorPlane = (Point3<f64>, Vector3<f64>);
 
 /// How far the planes of two pairs may differ: the sine of the angle, and the distance as a share
 /// of a piece's diagonal.
@@ -70,7 +70,7 @@ const ROUNDS: usize = 6;
 const NEAR: f64 = 4e-4;
 
 /// Pairs of pieces that are not in `taken`; `tolerance` is a share of a piece's diagonal.
-pub(super) fn outline_pairs(pieces: &Pieces, taken: &[bool], tolerance: f64) -> Vec<[usize; 2]> {
+pub(super) fn outline_pairs(pieces: &SurfacePieces, taken: &[bool], tolerance: f64) -> Vec<[usize; 2]> {
     let mut candidates = Vec::new();
     for a in 0..pieces.pieces.len() {
         for b in a + 1..pieces.pieces.len() {
@@ -96,19 +96,19 @@ pub(super) fn outline_pairs(pieces: &Pieces, taken: &[bool], tolerance: f64) -> 
     pairs
 }
 
-fn alike(s: &Surface, t: &Surface) -> bool {
+fn alike(s: &PieceSurface, t: &PieceSurface) -> bool {
     let near = |x: f64, y: f64| (x - y).abs() <= LIKE * x.max(y);
     s.loops().len() == 1 && t.loops().len() == 1 && near(s.area(), t.area())
 }
 
-fn same_plane(first: &Plane, other: &Plane, size: f64) -> bool {
+fn same_plane(first: &MirrorPlane, other: &MirrorPlane, size: f64) -> bool {
     first.1.cross(&other.1).norm() <= SAME_PLANE
         && (other.0 - first.0).dot(&first.1).abs() <= SAME_PLANE * size
 }
 
 /// The mean distance of the mirrored boundary of `s` from that of `t`, as a share of the diagonal,
 /// and the plane.
-fn mirrored_distance(s: &Surface, t: &Surface) -> Option<(f64, Plane)> {
+fn mirrored_distance(s: &PieceSurface, t: &PieceSurface) -> Option<(f64, MirrorPlane)> {
     let (a, b) = (boundary(s), boundary(t));
     let centre = |p: &[Point3<f64>]| p.iter().fold(Vector3::zeros(), |m, p| m + p.coords) / p.len() as f64;
     let (from, to) = (centre(&a), centre(&b));
@@ -123,13 +123,13 @@ fn mirrored_distance(s: &Surface, t: &Surface) -> Option<(f64, Plane)> {
     Some((mean / size, (middle, normal)))
 }
 
-fn boundary(s: &Surface) -> Vec<Point3<f64>> {
+fn boundary(s: &PieceSurface) -> Vec<Point3<f64>> {
     let outline = &s.loops()[0];
     let step = outline.len().div_ceil(MOST_POINTS);
     outline.iter().step_by(step).map(|&v| s.positions()[v as usize]).collect()
 }
 
-fn diagonal(s: &Surface) -> f64 {
+fn diagonal(s: &PieceSurface) -> f64 {
     let first = s.positions()[0];
     let (low, high) = s.positions().iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
     (high - low).norm()
@@ -137,7 +137,7 @@ fn diagonal(s: &Surface) -> f64 {
 
 /// What a pair is made equal with.
 pub(super) struct OutlineMirror<'a> {
-    pub(super) pieces: &'a Pieces,
+    pub(super) pieces: &'a SurfacePieces,
     /// An angle (radians) that makes a corner.
     pub(super) corner: f64,
     /// Farthest that outlines may lie apart, a share of the piece's diagonal.
@@ -152,35 +152,35 @@ impl OutlineMirror<'_> {
         &self,
         [a, b]: [usize; 2],
         flats: &mut [Flattening],
-        solve: impl Fn(usize, &[Term], Pull, &mut Flattening) -> Result<(), FlattenError>,
+        solve: impl Fn(usize, &[QuadraticTerm], Pull, &mut Flattening) -> Result<(), FlattenError>,
     ) -> Result<Option<OutlinePair>, FlattenError> {
         let laid = self.lay([a, b], flats);
         let before = laid.distance();
         if before > self.reach(a) {
             return Ok(None);
         }
-        let draw = |laid: &Laid, side: Side, pull: Pull, flats: &mut [Flattening]| {
+        let draw = |laid: &LaidPair, side: PairSide, pull: Pull, flats: &mut [Flattening]| {
             let piece = laid.pieces[side as usize];
             solve(piece, &self.drawn(laid, side, pull), pull, &mut flats[piece])
         };
-        draw(&laid, Side::First, Pull::Slide, flats)?;
+        draw(&laid, PairSide::First, Pull::Slide, flats)?;
         for _ in 0..SLIDES {
-            draw(&self.lay([a, b], flats), Side::Second, Pull::Slide, flats)?;
+            draw(&self.lay([a, b], flats), PairSide::Second, Pull::Slide, flats)?;
         }
         let mut laid = self.lay([a, b], flats);
         for round in 0..ROUNDS {
             if round > 0 {
-                draw(&laid, Side::First, Pull::Hold, flats)?;
+                draw(&laid, PairSide::First, Pull::Hold, flats)?;
                 laid = self.lay([a, b], flats);
             }
-            draw(&laid, Side::Second, Pull::Hold, flats)?;
+            draw(&laid, PairSide::Second, Pull::Hold, flats)?;
             laid = self.lay([a, b], flats);
             if laid.is_near() {
                 break;
             }
         }
         if !laid.is_near() {
-            draw(&laid, Side::Second, Pull::Fit, flats)?;
+            draw(&laid, PairSide::Second, Pull::Fit, flats)?;
             laid = self.lay([a, b], flats);
         }
         let after = laid.distance();
@@ -234,12 +234,12 @@ impl OutlineMirror<'_> {
         self.tolerance * diagonal(&self.pieces.pieces[piece].surface)
     }
 
-    fn lay(&self, [a, b]: [usize; 2], flats: &[Flattening]) -> Laid {
+    fn lay(&self, [a, b]: [usize; 2], flats: &[Flattening]) -> LaidPair {
         let outline = &self.pieces.pieces[a].surface.loops()[0];
-        let first = Outline::new(outline.iter().map(|&v| flats[a].points[v as usize]).collect());
+        let first = MeasuredOutline::new(outline.iter().map(|&v| flats[a].points[v as usize]).collect());
         let reversed = self.pieces.pieces[b].surface.loops()[0].iter().rev();
         let mirror = |&v: &u32| Point2::new(-flats[b].points[v as usize].x, flats[b].points[v as usize].y);
-        let second = Outline::new(reversed.map(mirror).collect());
+        let second = MeasuredOutline::new(reversed.map(mirror).collect());
         let (mut motion, shift) = align(&first, &second);
         let count = self.pieces.pieces[b].surface.loops()[0].len();
         let reversed = |knots: Vec<usize>| knots.into_iter().map(|k| count - 1 - k).collect::<Vec<_>>();
@@ -260,21 +260,21 @@ impl OutlineMirror<'_> {
         let map = Correspondence::new(&first, &moved, &knots, shift, reach);
         let ends = [self.ends(a, flats, self.corner), reversed(self.ends(b, flats, self.corner))];
         let near = NEAR * diagonal(&self.pieces.pieces[a].surface);
-        Laid { pieces: [a, b], a: first, b: moved, ends, near, motion, map }
+        LaidPair { pieces: [a, b], a: first, b: moved, ends, near, motion, map }
     }
 
     /// Terms that draw one outline to the other: the first to the mean of both, the second onto the
     /// first.
-    fn drawn(&self, laid: &Laid, side: Side, pull: Pull) -> Vec<Term> {
+    fn drawn(&self, laid: &LaidPair, side: PairSide, pull: Pull) -> Vec<QuadraticTerm> {
         let outline = &self.pieces.pieces[laid.pieces[side as usize]].surface.loops()[0];
-        let weight = if (side, pull) == (Side::First, Pull::Slide) { DRAW_WEIGHT } else { HOLD_WEIGHT };
+        let weight = if (side, pull) == (PairSide::First, Pull::Slide) { DRAW_WEIGHT } else { HOLD_WEIGHT };
         let targets = laid.targets(side, pull);
         let places: Vec<_> = targets.iter().map(|t| t.0).collect();
         let term = |(k, &v): (usize, &u32)| {
             let slides = pull == Pull::Slide && !targets[k].1;
             match normal(&places, k).filter(|_| slides) {
-                Some(normal) => Term::on_line(v, places[k], normal, weight),
-                None => Term::at(v, places[k], weight),
+                Some(normal) => QuadraticTerm::on_line(v, places[k], normal, weight),
+                None => QuadraticTerm::at(v, places[k], weight),
             }
         };
         outline.iter().enumerate().map(term).collect()

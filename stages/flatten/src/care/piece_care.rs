@@ -9,14 +9,14 @@ use super::{CareOptions, Objective, boundary_chains, straight_chains};
 use crate::error::FlattenError;
 use crate::flatteners::{Flattening, Placement};
 use crate::frames::{Frames, flipped};
-use crate::newton::{Constraint, NewtonReport, Problem, Term};
-use crate::surface::Surface;
-use crate::system::System;
+use crate::newton::{Constraint, NewtonOutcome, NewtonProblem, QuadraticTerm};
+use crate::surface::PieceSurface;
+use crate::system::PieceSystem;
 use nalgebra::{Point2, Vector2};
 
 /// One piece and what is asked of it.
 pub(super) struct PieceCare<'a> {
-    pub(super) surface: &'a Surface,
+    pub(super) surface: &'a PieceSurface,
     pub(super) objective: &'a Objective,
     pub(super) placement: &'a Placement,
     pub(super) options: CareOptions,
@@ -27,7 +27,7 @@ pub(super) struct PieceCare<'a> {
 impl PieceCare<'_> {
     /// Solves again, with some vertices drawn to places (in the unit of the piece); returns how
     /// many chains are straight now.
-    pub(super) fn solve(&self, flat: &mut Flattening, near: &[Term]) -> Result<usize, FlattenError> {
+    pub(super) fn solve(&self, flat: &mut Flattening, near: &[QuadraticTerm]) -> Result<usize, FlattenError> {
         let lines = self.lines(flat, near);
         if lines.is_empty() && self.sides.is_empty() && near.is_empty() {
             return Ok(0);
@@ -55,14 +55,14 @@ impl PieceCare<'_> {
     fn minimise(
         &self,
         plane: &StretchedPlane,
-        terms: Vec<Term>,
+        terms: Vec<QuadraticTerm>,
         upright: bool,
         q: &mut [Point2<f64>],
-    ) -> Result<NewtonReport, FlattenError> {
-        let pairs: Vec<[u32; 2]> = terms.iter().flat_map(Term::pairs).collect();
-        let (system, energy) = (System::new(self.surface, &pairs), self.objective.energy(self.surface)?);
+    ) -> Result<NewtonOutcome, FlattenError> {
+        let pairs: Vec<[u32; 2]> = terms.iter().flat_map(QuadraticTerm::pairs).collect();
+        let (system, energy) = (PieceSystem::new(self.surface, &pairs), self.objective.energy(self.surface)?);
         let constraints = self.constraints(plane, upright, energy.turns_freely());
-        let problem = Problem {
+        let problem = NewtonProblem {
             system: &system,
             frames: &plane.frames,
             energy: &*energy,
@@ -73,7 +73,7 @@ impl PieceCare<'_> {
     }
 
     /// The chains to make straight, judged where the drawn vertices should lie.
-    fn lines(&self, flat: &Flattening, near: &[Term]) -> Vec<Vec<u32>> {
+    fn lines(&self, flat: &Flattening, near: &[QuadraticTerm]) -> Vec<Vec<u32>> {
         if self.options.straight == 0.0 {
             return Vec::new();
         }
@@ -119,10 +119,10 @@ impl StretchedPlane {
         self.frames.restored(&relaxed)
     }
 
-    fn terms(&self, near: &[Term]) -> Vec<Term> {
-        let target = |t: &Term| t.target.component_mul(&self.stretch) / self.frames.unit();
+    fn terms(&self, near: &[QuadraticTerm]) -> Vec<QuadraticTerm> {
+        let target = |t: &QuadraticTerm| t.target.component_mul(&self.stretch) / self.frames.unit();
         // Normals of stretched lines.
-        let normal = |t: &Term| t.normal.map(|n| n.component_div(&self.stretch).normalize());
-        near.iter().map(|t| Term { target: target(t), normal: normal(t), ..*t }).collect()
+        let normal = |t: &QuadraticTerm| t.normal.map(|n| n.component_div(&self.stretch).normalize());
+        near.iter().map(|t| QuadraticTerm { target: target(t), normal: normal(t), ..*t }).collect()
     }
 }

@@ -17,13 +17,13 @@ use super::seam_lengths::{SeamLengths, seam_targets, side_lengths, sides_of};
 use crate::error::FlattenError;
 use crate::flatteners::{Flattening, Placement};
 use crate::frames::flipped;
-use crate::islands::Pieces;
-use crate::newton::Term;
+use crate::islands::SurfacePieces;
+use crate::newton::QuadraticTerm;
 use nalgebra::Point2;
 use rayon::prelude::*;
 
 impl CareOptions {
-    fn outline_pairs(&self, pieces: &Pieces, exact: &[MirrorPair]) -> Vec<[usize; 2]> {
+    fn outline_pairs(&self, pieces: &SurfacePieces, exact: &[MirrorPair]) -> Vec<[usize; 2]> {
         if self.mirror_outline == 0.0 {
             return Vec::new();
         }
@@ -57,7 +57,7 @@ const STRAIGHT: f64 = 1e-4;
 /// [`FlattenError::InvalidParameter`], lists of other lengths than that of the pieces,
 /// [`FlattenError::NoStart`] for flat pieces with flipped triangles, and the errors of the solver.
 pub fn refine(
-    pieces: &Pieces,
+    pieces: &SurfacePieces,
     flats: &mut [Flattening],
     objective: &Objective,
     placements: &[Placement],
@@ -85,7 +85,7 @@ pub fn refine(
     // lengths.
     let exact: Vec<_> = pairs.iter().filter(|p| p.exact).cloned().collect();
     make_mirrors(pieces, &exact, flats);
-    let solve = |i: usize, near: &[Term], pull: Pull, flat: &mut Flattening| {
+    let solve = |i: usize, near: &[QuadraticTerm], pull: Pull, flat: &mut Flattening| {
         let mut care = care(i);
         if pull != Pull::Slide {
             care.options.straight = care.options.straight.min(STRAIGHT);
@@ -108,7 +108,11 @@ pub fn refine(
     Ok(CareReport { seams, straight, mirrors: pairs.into_iter().zip(apart).collect(), outlines })
 }
 
-fn check_flats(pieces: &Pieces, flats: &[Flattening], placements: &[Placement]) -> Result<(), FlattenError> {
+fn check_flats(
+    pieces: &SurfacePieces,
+    flats: &[Flattening],
+    placements: &[Placement],
+) -> Result<(), FlattenError> {
     let mismatch =
         |what, found, wanted| Err(crate::SurfaceError::LengthMismatch { what, found, wanted }.into());
     if flats.len() != pieces.pieces.len() {
@@ -133,7 +137,7 @@ fn check_flats(pieces: &Pieces, flats: &[Flattening], placements: &[Placement]) 
 }
 
 /// Replaces the pieces of each pair by their mean, unless that flips a triangle.
-fn make_mirrors(pieces: &Pieces, pairs: &[MirrorPair], flats: &mut [Flattening]) {
+fn make_mirrors(pieces: &SurfacePieces, pairs: &[MirrorPair], flats: &mut [Flattening]) {
     for pair in pairs {
         let [first, second] = mean(pair, &flats[pair.a].points, &flats[pair.b].points);
         let sound = |i: usize, q: &[Point2<f64>]| flipped(pieces.pieces[i].surface.triangles(), q).is_empty();

@@ -5,7 +5,7 @@
 
 use super::flat_length;
 use crate::flatteners::Flattening;
-use crate::islands::Seam;
+use crate::islands::SurfaceSeam;
 
 /// The two sides of a seam, in the unit of the garment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ const MIRRORED_SEAM: f64 = 0.25;
 
 /// The length that each seam should get: the mean of its sides, and of those of the seams that are
 /// its mirror images.
-pub(super) fn seam_targets(seams: &[Seam], flats: &[Flattening], alike: &[[usize; 2]]) -> Vec<f64> {
+pub(super) fn seam_targets(seams: &[SurfaceSeam], flats: &[Flattening], alike: &[[usize; 2]]) -> Vec<f64> {
     let means = seams.iter().map(|s| side_lengths(s, flats)).map(|[a, b]| (a + b) / 2.0);
     let means: Vec<f64> = means.collect();
     // The lowest seam of each group stands for it.
@@ -47,12 +47,12 @@ pub(super) fn seam_targets(seams: &[Seam], flats: &[Flattening], alike: &[[usize
 }
 
 /// The lengths of both sides.
-pub(super) fn side_lengths(seam: &Seam, flats: &[Flattening]) -> [f64; 2] {
+pub(super) fn side_lengths(seam: &SurfaceSeam, flats: &[Flattening]) -> [f64; 2] {
     [&seam.a, &seam.b].map(|c| flat_length(&c.vertices, &flats[c.piece].points))
 }
 
 /// Chains of a piece with the lengths that they should get.
-pub(super) fn sides_of(piece: usize, seams: &[Seam], targets: &[f64]) -> Vec<(Vec<u32>, f64)> {
+pub(super) fn sides_of(piece: usize, seams: &[SurfaceSeam], targets: &[f64]) -> Vec<(Vec<u32>, f64)> {
     let mut sides = Vec::new();
     for (seam, &target) in seams.iter().zip(targets) {
         let of = [&seam.a, &seam.b].into_iter().filter(|c| c.piece == piece && target > 0.0);

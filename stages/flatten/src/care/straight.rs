@@ -1,6 +1,6 @@
 //! Straight edges: chains that are nearly lines become lines.
 
-use crate::newton::Term;
+use crate::newton::QuadraticTerm;
 use nalgebra::Point2;
 
 /// Weight of a point's distance from its place on the line: a hundred thousand times the stiffness
@@ -41,19 +41,19 @@ fn proportions(chain: &[u32], flat: &[Point2<f64>]) -> Vec<f64> {
 }
 
 /// Terms that hold the inner points of straight chains on their lines, in proportion.
-pub(super) fn line_terms(chains: &[Vec<u32>], flat: &[Point2<f64>]) -> Vec<Term> {
+pub(super) fn line_terms(chains: &[Vec<u32>], flat: &[Point2<f64>]) -> Vec<QuadraticTerm> {
     let mut terms = Vec::new();
     for chain in chains {
         let (first, last) = (chain[0], chain[chain.len() - 1]);
         for (&v, t) in chain[1..].iter().zip(proportions(chain, flat)) {
-            terms.push(Term::between(v, first, last, t, LINE_WEIGHT));
+            terms.push(QuadraticTerm::between(v, first, last, t, LINE_WEIGHT));
         }
     }
     terms
 }
 
 /// Puts what the terms hold exactly on the lines.
-pub(super) fn snap(terms: &[Term], flat: &mut [Point2<f64>]) {
+pub(super) fn snap(terms: &[QuadraticTerm], flat: &mut [Point2<f64>]) {
     for term in terms {
         let [v, from, to] = term.vertices.map(|v| v as usize);
         let t = -term.coefficients[2];

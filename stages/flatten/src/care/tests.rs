@@ -1,13 +1,13 @@
 use super::*;
 use crate::distortion::distortion;
 use crate::flatteners::{Flattening, Placement, Tension};
-use crate::islands::{Pieces, islands_by_group, split_components};
-use crate::newton::NewtonOptions;
+use crate::islands::{SurfacePieces, islands_by_group, split_components};
+use crate::newton::StoppingLimits;
 use crate::shapes::{bump, cone, grid, surface};
 use nalgebra::Point3;
 
 /// A tube about y with a bulge that is off its axis, of two halves, front and back.
-fn bulged_tube(lean: f64) -> Pieces {
+fn bulged_tube(lean: f64) -> SurfacePieces {
     let (places, triangles) = grid(24, 12, |u, v| {
         let a = std::f64::consts::TAU * u;
         let r = 1.0 + 0.3 * (-8.0 * (v - 0.5).powi(2)).exp() * (1.2 + a.cos() + lean * a.sin());
@@ -20,12 +20,12 @@ fn bulged_tube(lean: f64) -> Pieces {
     islands_by_group(&places, &triangles, &groups).unwrap_or_else(|e| unreachable!("{e}"))
 }
 
-fn defaults(garment: &Pieces) -> Vec<Placement> {
+fn defaults(garment: &SurfacePieces) -> Vec<Placement> {
     vec![Placement::default(); garment.pieces.len()]
 }
 
-fn flats(garment: &Pieces, objective: Objective, placement: &Placement) -> Vec<Flattening> {
-    let flatten = |s| objective.flatten(s, NewtonOptions::default(), placement);
+fn flats(garment: &SurfacePieces, objective: Objective, placement: &Placement) -> Vec<Flattening> {
+    let flatten = |s| objective.flatten(s, StoppingLimits::default(), placement);
     garment.pieces.iter().map(|p| flatten(&p.surface).unwrap_or_else(|e| unreachable!("{e}"))).collect()
 }
 
@@ -55,8 +55,8 @@ fn seams_come_out_equal_and_areas_stay() {
     }
 }
 
-fn areas(garment: &Pieces, flat: &[Flattening]) -> Vec<f64> {
-    let area = |(p, f): (&crate::islands::Piece, &Flattening)| {
+fn areas(garment: &SurfacePieces, flat: &[Flattening]) -> Vec<f64> {
+    let area = |(p, f): (&crate::islands::SurfacePiece, &Flattening)| {
         distortion(&p.surface, &f.points).map_or(0.0, |d| d.area_2d)
     };
     garment.pieces.iter().zip(flat).map(area).collect()
@@ -153,7 +153,7 @@ fn a_dart_that_was_sewn_shut_is_found_again() {
     let Ok(cut) = cut_darts(&s, &darts) else { unreachable!() };
     assert_eq!((cut.pieces.len(), cut.seams.len()), (1, 1));
     let flat =
-        Objective::Arap.flatten(&cut.pieces[0].surface, NewtonOptions::default(), &Placement::default());
+        Objective::Arap.flatten(&cut.pieces[0].surface, StoppingLimits::default(), &Placement::default());
     let error = flat.map(|f| distortion(&cut.pieces[0].surface, &f.points).map(|d| d.local_area_error));
     assert!(error.is_ok_and(|e| e.is_ok_and(|e| e < 1e-4)));
 }

@@ -11,11 +11,11 @@ mod tests;
 
 use crossings::boundary_crossings;
 use strain::triangle_strains;
-pub use strain::{Spread, TriangleStrain};
+pub use strain::{StrainSpread, TriangleStrain};
 
 use crate::error::SurfaceError;
 use crate::frames::{Frames, flat_area, flipped};
-use crate::surface::{FREE, Surface};
+use crate::surface::{FREE, PieceSurface};
 use nalgebra::{Point2, Vector2, Vector3};
 use std::f64::consts::PI;
 
@@ -42,11 +42,11 @@ pub struct Distortion {
     /// corners.
     pub corner_change: f64,
     /// Strain along the warp.
-    pub warp: Spread,
+    pub warp: StrainSpread,
     /// Strain along the weft.
-    pub weft: Spread,
+    pub weft: StrainSpread,
     /// The larger principal strain of each triangle, by absolute value.
-    pub principal: Spread,
+    pub principal: StrainSpread,
     /// Triangles face down or without area.
     pub flipped: usize,
     /// Pairs of boundary edges that cross.
@@ -74,7 +74,7 @@ pub const CORNER: f64 = 30.0;
 ///
 /// # Errors
 /// [`SurfaceError::LengthMismatch`] unless there is one finite place a vertex.
-pub fn distortion(surface: &Surface, flat: &[Point2<f64>]) -> Result<Distortion, SurfaceError> {
+pub fn distortion(surface: &PieceSurface, flat: &[Point2<f64>]) -> Result<Distortion, SurfaceError> {
     let wanted = surface.positions().len();
     if flat.len() != wanted {
         return Err(SurfaceError::LengthMismatch { what: "flat places", found: flat.len(), wanted });
@@ -85,7 +85,9 @@ pub fn distortion(surface: &Surface, flat: &[Point2<f64>]) -> Result<Distortion,
     let frames = Frames::new(surface);
     let triangles = triangle_strains(surface, &frames, flat);
     let spread = |of: fn(&TriangleStrain) -> f64| {
-        Spread::new(&triangles.iter().enumerate().map(|(t, s)| (of(s), frames.share(t))).collect::<Vec<_>>())
+        StrainSpread::new(
+            &triangles.iter().enumerate().map(|(t, s)| (of(s), frames.share(t))).collect::<Vec<_>>(),
+        )
     };
     let (area_3d, area_2d) = (surface.area(), flat_area(surface.triangles(), flat));
     let local = triangles.iter().enumerate().map(|(t, s)| frames.share(t) * (s.area_ratio - 1.0).abs()).sum();
@@ -111,7 +113,7 @@ pub fn distortion(surface: &Surface, flat: &[Point2<f64>]) -> Result<Distortion,
 }
 
 /// The lengths of all boundary loops, on the garment and in the plane.
-fn outlines(surface: &Surface, flat: &[Point2<f64>]) -> (f64, f64) {
+fn outlines(surface: &PieceSurface, flat: &[Point2<f64>]) -> (f64, f64) {
     let (mut space, mut plane) = (0.0, 0.0);
     for vertices in surface.loops() {
         let next = vertices.iter().cycle().skip(1);
@@ -124,7 +126,7 @@ fn outlines(surface: &Surface, flat: &[Point2<f64>]) -> (f64, f64) {
 }
 
 /// The angles of vertices that are corners on the garment.
-fn corners_of(surface: &Surface, flat: &[Point2<f64>]) -> Vec<CornerAngles> {
+fn corners_of(surface: &PieceSurface, flat: &[Point2<f64>]) -> Vec<CornerAngles> {
     let n = surface.positions().len();
     let (mut space, mut plane, mut on_boundary) = (vec![0.0; n], vec![0.0; n], vec![false; n]);
     for (t, corners) in surface.triangles().iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::energy::singular_values;
 use crate::frames::{Frames, corners};
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::Point2;
 
 /// The strain of one triangle of the garment against the flat cloth, without unit.
@@ -22,7 +22,7 @@ pub struct TriangleStrain {
 
 /// How a strain is spread over the area.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Spread {
+pub struct StrainSpread {
     /// Mean of the strain with its sign.
     pub signed_mean: f64,
     /// Mean of the absolute strain.
@@ -33,7 +33,7 @@ pub struct Spread {
     pub max: f64,
 }
 
-impl Spread {
+impl StrainSpread {
     /// Of values with weights above zero.
     #[must_use]
     pub fn new(values: &[(f64, f64)]) -> Self {
@@ -58,7 +58,7 @@ impl Spread {
 /// Strains of all triangles; those without flat area count as stretched without limit.
 #[must_use]
 pub(super) fn triangle_strains(
-    surface: &Surface,
+    surface: &PieceSurface,
     frames: &Frames,
     flat: &[Point2<f64>],
 ) -> Vec<TriangleStrain> {

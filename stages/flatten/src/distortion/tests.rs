@@ -2,7 +2,7 @@ use super::*;
 use crate::shapes::{bump, grid, surface};
 use nalgebra::Point2;
 
-fn plane(s: &Surface, place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<Point2<f64>> {
+fn plane(s: &PieceSurface, place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<Point2<f64>> {
     s.positions().iter().map(|p| Point2::from(place(p.x, p.y))).collect()
 }
 

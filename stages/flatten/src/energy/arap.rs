@@ -4,7 +4,7 @@
 //! That alone lets triangles lose their area: a thousandth of the symmetric Dirichlet energy keeps
 //! it above zero.
 
-use super::SymmetricDirichlet;
+use super::SymmetricDirichletEnergy;
 use super::isotropic::{Isotropic, Stretches};
 use nalgebra::Vector2;
 
@@ -12,17 +12,17 @@ use nalgebra::Vector2;
 /// distance from 1.
 const AREA_KEEPER: f64 = 1e-3;
 
-/// `(s1 - 1)^2 + (s2 - 1)^2`, with a thousandth of [`SymmetricDirichlet`].
+/// `(s1 - 1)^2 + (s2 - 1)^2`, with a thousandth of [`SymmetricDirichletEnergy`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Arap;
+pub struct ArapEnergy;
 
-impl Isotropic for Arap {
+impl Isotropic for ArapEnergy {
     fn value(&self, s: Vector2<f64>) -> f64 {
-        s.map(|s| (s - 1.0).powi(2)).sum() + AREA_KEEPER * Isotropic::value(&SymmetricDirichlet, s)
+        s.map(|s| (s - 1.0).powi(2)).sum() + AREA_KEEPER * Isotropic::value(&SymmetricDirichletEnergy, s)
     }
 
     fn stretches(&self, s: Vector2<f64>) -> Stretches {
-        let keeper = SymmetricDirichlet.stretches(s);
+        let keeper = SymmetricDirichletEnergy.stretches(s);
         Stretches {
             first: s.map(|s| 2.0 * (s - 1.0)) + keeper.first * AREA_KEEPER,
             second: Vector2::new(2.0, 2.0) + keeper.second * AREA_KEEPER,

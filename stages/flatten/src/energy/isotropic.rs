@@ -5,7 +5,7 @@
 //! `(f1 - f2) / (s1 - s2)`, and the twist, with `(f1 + f2) / (s1 + s2)`. Each is cut off at zero by
 //! itself, so no numerical eigenvalues are needed.
 
-use super::{Derivatives, Energy, Hessian};
+use super::{Derivatives, EnergyDensity, Hessian};
 use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 
 /// A density of the two stretches, both positive.
@@ -29,7 +29,7 @@ pub struct Stretches {
     pub flip: f64,
 }
 
-impl<E: Isotropic> Energy for E {
+impl<E: Isotropic> EnergyDensity for E {
     fn value(&self, _: usize, j: &Matrix2<f64>) -> f64 {
         if j.determinant() > 0.0 { Isotropic::value(self, singular_values(j)) } else { f64::INFINITY }
     }

@@ -13,16 +13,16 @@ mod symmetric_dirichlet;
 mod tests;
 mod woven;
 
-pub use arap::Arap;
+pub use arap::ArapEnergy;
 pub use isotropic::{Isotropic, Stretches, singular_values};
-pub use springs::Springs;
-pub use symmetric_dirichlet::SymmetricDirichlet;
-pub use woven::{Woven, WovenStiffness};
+pub use springs::SpringEnergy;
+pub use symmetric_dirichlet::SymmetricDirichletEnergy;
+pub use woven::{WovenEnergy, WovenStiffness};
 
 use nalgebra::{Matrix2, Matrix4, Vector4};
 
 /// A density of energy.
-pub trait Energy: Sync {
+pub trait EnergyDensity: Sync {
     /// The density at the map `j` of a triangle; infinite where the triangle is flipped or without
     /// area.
     fn value(&self, triangle: usize, j: &Matrix2<f64>) -> f64;

@@ -6,9 +6,9 @@
 //! so that the energy does not depend on the mesh's fineness. Springs alone let a triangle fold to
 //! nothing: a thousandth of the symmetric Dirichlet energy keeps its area above zero.
 
-use super::{Derivatives, Energy, Hessian, SymmetricDirichlet};
+use super::{Derivatives, EnergyDensity, Hessian, SymmetricDirichletEnergy};
 use crate::frames::local_edges;
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::{Matrix2, Vector2, Vector4};
 
 /// The share of symmetric Dirichlet energy: it moves no vertex by more than a thousandth of the
@@ -17,14 +17,14 @@ const AREA_KEEPER: f64 = 1e-3;
 
 /// Rest vectors of the edges of every triangle, each of unit length in the triangle's plane.
 #[derive(Debug, Clone)]
-pub struct Springs {
+pub struct SpringEnergy {
     edges: Vec<[Vector2<f64>; 3]>,
 }
 
-impl Springs {
+impl SpringEnergy {
     /// The springs of a surface.
     #[must_use]
-    pub fn new(surface: &Surface) -> Self {
+    pub fn new(surface: &PieceSurface) -> Self {
         let edges = (0..surface.triangles().len()).map(|t| {
             let [b, c] = local_edges(surface, t);
             [b, c - b, -c].map(|e| e.normalize())
@@ -33,14 +33,14 @@ impl Springs {
     }
 }
 
-impl Energy for Springs {
+impl EnergyDensity for SpringEnergy {
     fn value(&self, triangle: usize, j: &Matrix2<f64>) -> f64 {
         let springs: f64 = self.edges[triangle].iter().map(|e| ((j * e).norm() - 1.0).powi(2) / 2.0).sum();
-        springs + AREA_KEEPER * Energy::value(&SymmetricDirichlet, triangle, j)
+        springs + AREA_KEEPER * EnergyDensity::value(&SymmetricDirichletEnergy, triangle, j)
     }
 
     fn derivatives(&self, triangle: usize, j: &Matrix2<f64>, wanted: Hessian) -> Derivatives {
-        let keeper = SymmetricDirichlet.derivatives(triangle, j, wanted);
+        let keeper = SymmetricDirichletEnergy.derivatives(triangle, j, wanted);
         let mut sum = Derivatives {
             value: AREA_KEEPER * keeper.value,
             gradient: keeper.gradient * AREA_KEEPER,

@@ -9,9 +9,9 @@ use nalgebra::Vector2;
 
 /// `(s1 - 1/s1)^2 + (s2 - 1/s2)^2`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct SymmetricDirichlet;
+pub struct SymmetricDirichletEnergy;
 
-impl Isotropic for SymmetricDirichlet {
+impl Isotropic for SymmetricDirichletEnergy {
     fn value(&self, s: Vector2<f64>) -> f64 {
         // (s - 1/s)^2, without the loss of digits of s^2 + 1/s^2 - 2 near 1.
         s.map(|s| (s - 1.0 / s).powi(2)).sum()

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 /// Gradient and exact Hessian against differences of the value; the projected one has no negative
 /// eigenvalues.
-fn check_derivatives(energy: &dyn Energy, j: Matrix2<f64>) {
+fn check_derivatives(energy: &dyn EnergyDensity, j: Matrix2<f64>) {
     let d = energy.derivatives(0, &j, Hessian::Projected);
     let exact = energy.derivatives(0, &j, Hessian::Exact);
     assert_eq!((d.value, d.gradient), (exact.value, exact.gradient));
@@ -33,9 +33,9 @@ fn map(a: f64, b: f64, s: f64, t: f64) -> Matrix2<f64> {
 
 #[test]
 fn isometries_cost_nothing_and_flips_everything() {
-    let woven = Woven::new(WovenStiffness::COTTON);
-    let woven: &dyn Energy = woven.as_ref().map_or(&Arap, |w| w);
-    for energy in [&SymmetricDirichlet as &dyn Energy, &Arap, woven] {
+    let woven = WovenEnergy::new(WovenStiffness::COTTON);
+    let woven: &dyn EnergyDensity = woven.as_ref().map_or(&ArapEnergy, |w| w);
+    for energy in [&SymmetricDirichletEnergy as &dyn EnergyDensity, &ArapEnergy, woven] {
         assert!(energy.value(0, &map(0.4, -1.0, 1.0, 1.0)).abs() < 1e-28);
         assert_eq!(energy.value(0, &map(0.4, -1.0, 1.0, -1.0)), f64::INFINITY);
     }
@@ -44,7 +44,7 @@ fn isometries_cost_nothing_and_flips_everything() {
 #[test]
 fn woven_stiffness_is_the_second_derivative() {
     // 1 % of strain along the warp alone, as an energy: k/2 0.01^2, the stiffest scaled to 4.
-    let woven = Woven::new(WovenStiffness { warp: 500.0, weft: 1000.0, shear: 10.0 });
+    let woven = WovenEnergy::new(WovenStiffness { warp: 500.0, weft: 1000.0, shear: 10.0 });
     let value = woven.map(|w| w.value(0, &Matrix2::new(1.0, 0.0, 0.0, 1.0 / 1.01)));
     assert!(value.is_ok_and(|v| (v / (2.0 / 2.0 * 0.0001) - 1.0).abs() < 0.02));
 }
@@ -52,7 +52,7 @@ fn woven_stiffness_is_the_second_derivative() {
 #[test]
 fn stiffnesses_out_of_range_are_refused() {
     let error = |warp, shear| {
-        Woven::new(WovenStiffness { warp, weft: 1.0, shear })
+        WovenEnergy::new(WovenStiffness { warp, weft: 1.0, shear })
             .map_or_else(|e| e.to_string(), |_| String::new())
     };
     let range = "stiffnesses are above zero and within a factor of 1000000 of each other";
@@ -65,11 +65,11 @@ proptest! {
     #[test]
     fn derivatives_are_those_of_the_value(a in -3.0..3.0f64, b in -3.0..3.0f64, s in 0.6..1.7f64, t in 0.6..1.7f64) {
         let j = map(a, b, s, t);
-        check_derivatives(&SymmetricDirichlet, j);
-        check_derivatives(&Arap, j);
-        let springs = Springs::new(&surface(bump(1, 1, 0.3)));
+        check_derivatives(&SymmetricDirichletEnergy, j);
+        check_derivatives(&ArapEnergy, j);
+        let springs = SpringEnergy::new(&surface(bump(1, 1, 0.3)));
         check_derivatives(&springs, j);
-        if let Ok(woven) = Woven::new(WovenStiffness { warp: 3.0, weft: 2.0, shear: 0.5 }) {
+        if let Ok(woven) = WovenEnergy::new(WovenStiffness { warp: 3.0, weft: 2.0, shear: 0.5 }) {
             check_derivatives(&woven, j);
         }
     }

@@ -9,7 +9,7 @@
 //! Q - R^2: w^2 = Q / D, p^2 = P / D, tan^2 g = R^2 / D. Cost: some 200 operations a triangle, and
 //! 4 x 4 eigenvalues where the Hessian is not positive.
 
-use super::{Derivatives, Energy, Hessian, project};
+use super::{Derivatives, EnergyDensity, Hessian, project};
 use crate::error::FlattenError;
 use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, Vector2, Vector3, Vector4};
 
@@ -35,13 +35,13 @@ const MOST_RATIO: f64 = 1e6;
 
 /// The energy of [`WovenStiffness`], its stiffest direction counted as 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Woven {
+pub struct WovenEnergy {
     warp: f64,
     weft: f64,
     shear: f64,
 }
 
-impl Woven {
+impl WovenEnergy {
     /// An energy by stiffnesses, each above zero.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl Woven {
     }
 }
 
-impl Energy for Woven {
+impl EnergyDensity for WovenEnergy {
     fn value(&self, _: usize, j: &Matrix2<f64>) -> f64 {
         let d = j.determinant();
         if d <= 0.0 || d.is_nan() {

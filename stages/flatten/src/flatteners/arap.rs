@@ -8,14 +8,14 @@
 //! unknowns, two solutions an iteration, then some Newton steps.
 
 use super::{Flattening, Placement};
-use crate::energy::Arap;
+use crate::energy::ArapEnergy;
 use crate::error::FlattenError;
 use crate::frames::{Frames, corners, flipped};
-use crate::linear::{Cholesky, slot};
-use crate::newton::{NewtonOptions, NewtonReport, Problem};
+use crate::linear::{CholeskyFactor, slot};
+use crate::newton::{NewtonOutcome, NewtonProblem, StoppingLimits};
 use crate::start::start;
-use crate::surface::Surface;
-use crate::system::System;
+use crate::surface::PieceSurface;
+use crate::system::PieceSystem;
 use nalgebra::{Point2, Vector2};
 
 /// How long to iterate.
@@ -25,7 +25,7 @@ pub struct ArapOptions {
     /// Newton's method alone is faster.
     pub pairs: usize,
     /// When Newton's method stops; 0 iterations leave the result of the pairs, if it has no flips.
-    pub newton: NewtonOptions,
+    pub newton: StoppingLimits,
 }
 
 /// The least weight of an unknown by area, against the drift of the whole piece.
@@ -37,26 +37,27 @@ const DRIFT: f64 = 1e-6;
 /// Parameters of the placement or options, [`FlattenError::NoStart`],
 /// [`FlattenError::Factorization`].
 pub fn arap(
-    surface: &Surface,
+    surface: &PieceSurface,
     options: ArapOptions,
     placement: &Placement,
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (System::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
     let (flat, start) = start(surface, &system, &frames)?;
     let mut better = flat.clone();
     pairs(&system, &frames, options.pairs, &mut better)?;
     // The pairs do not care about flips; Newton's method must start without.
     let mut flat = if flipped(system.triangles(), &better).is_empty() { better } else { flat };
-    let problem = Problem { system: &system, frames: &frames, energy: &Arap, terms: &[], constraints: &[] };
+    let problem =
+        NewtonProblem { system: &system, frames: &frames, energy: &ArapEnergy, terms: &[], constraints: &[] };
     let report = problem.minimise(&mut flat, options.newton)?;
     let iterations = report.iterations + options.pairs;
-    placement.finish(surface, &frames, flat, (start, NewtonReport { iterations, ..report }))
+    placement.finish(surface, &frames, flat, (start, NewtonOutcome { iterations, ..report }))
 }
 
 /// Makes `count` pairs of a local and a global step.
 pub(crate) fn pairs(
-    system: &System,
+    system: &PieceSystem,
     frames: &Frames,
     count: usize,
     q: &mut [Point2<f64>],
@@ -65,7 +66,7 @@ pub(crate) fn pairs(
         return Ok(());
     }
     let (values, masses) = laplacian(system, frames);
-    let mut factor = Cholesky::analyse(system.graph(), 1, system.order())?;
+    let mut factor = CholeskyFactor::analyse(system.graph(), 1, system.order())?;
     factor.factor(&values)?;
     let n = q.len();
     for _ in 0..count {
@@ -89,7 +90,7 @@ pub(crate) fn pairs(
 }
 
 /// The matrix of `sum share |J|^2` plus the masses, and the masses.
-fn laplacian(system: &System, frames: &Frames) -> (Vec<f64>, Vec<f64>) {
+fn laplacian(system: &PieceSystem, frames: &Frames) -> (Vec<f64>, Vec<f64>) {
     let graph = system.graph();
     let mut values = vec![0.0; graph.vertices() + graph.pairs()];
     let mut masses = vec![0.0; graph.vertices()];

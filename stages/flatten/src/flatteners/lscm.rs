@@ -5,17 +5,17 @@ use super::{Flattening, NOTHING_MINIMISED, Placement};
 use crate::error::FlattenError;
 use crate::frames::Frames;
 use crate::start::conformal_start;
-use crate::surface::Surface;
-use crate::system::System;
+use crate::surface::PieceSurface;
+use crate::system::PieceSystem;
 
 /// Flattens with the least angle errors; where that flips triangles, gives Tutte's embedding
 /// instead, and says so.
 ///
 /// # Errors
 /// Parameters of the placement, [`FlattenError::NoStart`], [`FlattenError::Factorization`].
-pub fn lscm(surface: &Surface, placement: &Placement) -> Result<Flattening, FlattenError> {
+pub fn lscm(surface: &PieceSurface, placement: &Placement) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (System::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
     let (flat, start) = conformal_start(surface, &system, &frames)?;
     placement.finish(surface, &frames, flat, (start, NOTHING_MINIMISED))
 }

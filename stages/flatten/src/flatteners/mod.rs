@@ -22,9 +22,9 @@ pub use newton_methods::{springs, symmetric_dirichlet, woven};
 use crate::error::FlattenError;
 use crate::frames::{Frames, flipped};
 use crate::grain::{Grain, turn_upright};
-use crate::newton::NewtonReport;
-use crate::start::Start;
-use crate::surface::Surface;
+use crate::newton::NewtonOutcome;
+use crate::start::StartMethod;
+use crate::surface::PieceSurface;
 use nalgebra::Point2;
 
 /// A flat piece and how it came about.
@@ -34,9 +34,9 @@ pub struct Flattening {
     /// the grain.
     pub points: Vec<Point2<f64>>,
     /// Where the solution started.
-    pub start: Start,
+    pub start: StartMethod,
     /// What the minimisation did; nothing for a map that needs none.
-    pub report: NewtonReport,
+    pub report: NewtonOutcome,
     /// Whether the grain has a direction on the piece; a piece that lies across it is left as it
     /// is.
     pub upright: bool,
@@ -72,7 +72,7 @@ impl Placement {
     ///
     /// # Errors
     /// [`FlattenError::InvalidParameter`], [`FlattenError::NoSuchVertex`].
-    pub(crate) fn check(&self, surface: &Surface) -> Result<(), FlattenError> {
+    pub(crate) fn check(&self, surface: &PieceSurface) -> Result<(), FlattenError> {
         for (name, value) in [("tension.warp", self.tension.warp), ("tension.weft", self.tension.weft)] {
             if !(value > -0.9 && value < 10.0) {
                 let range = "a strain above -0.9 and below 10";
@@ -88,10 +88,10 @@ impl Placement {
     /// [`FlattenError::TooSmall`] if rounding flips a triangle.
     pub(crate) fn finish(
         &self,
-        surface: &Surface,
+        surface: &PieceSurface,
         frames: &Frames,
         mut flat: Vec<Point2<f64>>,
-        (start, report): (Start, NewtonReport),
+        (start, report): (StartMethod, NewtonOutcome),
     ) -> Result<Flattening, FlattenError> {
         let upright = turn_upright(&self.grain.weights(surface, frames), &mut flat);
         let (x, y) = (1.0 + self.tension.weft, 1.0 + self.tension.warp);
@@ -106,11 +106,11 @@ impl Placement {
 impl Flattening {
     /// Triangles of the surface that lie face down; none comes from the flatteners.
     #[must_use]
-    pub fn flipped(&self, surface: &Surface) -> Vec<usize> {
+    pub fn flipped(&self, surface: &PieceSurface) -> Vec<usize> {
         flipped(surface.triangles(), &self.points)
     }
 }
 
 /// The report of a map that nothing was minimised for.
-pub(crate) const NOTHING_MINIMISED: NewtonReport =
-    NewtonReport { iterations: 0, energy: 0.0, remaining: 0.0, converged: true };
+pub(crate) const NOTHING_MINIMISED: NewtonOutcome =
+    NewtonOutcome { iterations: 0, energy: 0.0, remaining: 0.0, converged: true };

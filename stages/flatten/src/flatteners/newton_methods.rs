@@ -1,14 +1,14 @@
 //! Flatteners that are Newton's method with one energy each.
 
 use super::{Flattening, Placement};
-use crate::energy::{Energy, Springs, SymmetricDirichlet, Woven, WovenStiffness};
+use crate::energy::{EnergyDensity, SpringEnergy, SymmetricDirichletEnergy, WovenEnergy, WovenStiffness};
 use crate::error::FlattenError;
 use crate::frames::{Frames, flipped};
 use crate::grain::turn_upright;
-use crate::newton::{Constraint, NewtonOptions, Problem};
-use crate::start::{Start, neighbour_layout, start};
-use crate::surface::Surface;
-use crate::system::System;
+use crate::newton::{Constraint, NewtonProblem, StoppingLimits};
+use crate::start::{StartMethod, neighbour_layout, start};
+use crate::surface::PieceSurface;
+use crate::system::PieceSystem;
 use nalgebra::{Point2, Vector2};
 
 /// Flattens with the least symmetric Dirichlet energy (Smith and Schaefer 2015), which no triangle
@@ -18,15 +18,16 @@ use nalgebra::{Point2, Vector2};
 /// Parameters of the placement or options, [`FlattenError::NoStart`],
 /// [`FlattenError::Factorization`].
 pub fn symmetric_dirichlet(
-    surface: &Surface,
-    options: NewtonOptions,
+    surface: &PieceSurface,
+    options: StoppingLimits,
     placement: &Placement,
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (System::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
     let (mut flat, start) = start(surface, &system, &frames)?;
-    let energy = SymmetricDirichlet;
-    let problem = Problem { system: &system, frames: &frames, energy: &energy, terms: &[], constraints: &[] };
+    let energy = SymmetricDirichletEnergy;
+    let problem =
+        NewtonProblem { system: &system, frames: &frames, energy: &energy, terms: &[], constraints: &[] };
     let report = problem.minimise(&mut flat, options)?;
     placement.finish(surface, &frames, flat, (start, report))
 }
@@ -38,20 +39,21 @@ pub fn symmetric_dirichlet(
 /// # Errors
 /// As [`symmetric_dirichlet`].
 pub fn springs(
-    surface: &Surface,
-    options: NewtonOptions,
+    surface: &PieceSurface,
+    options: StoppingLimits,
     placement: &Placement,
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (System::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
     let layout = frames.scaled(&neighbour_layout(surface));
     let (mut flat, start) = if flipped(system.triangles(), &layout).is_empty() {
-        (layout, Start::Neighbours)
+        (layout, StartMethod::Neighbours)
     } else {
         start(surface, &system, &frames)?
     };
-    let energy = Springs::new(surface);
-    let problem = Problem { system: &system, frames: &frames, energy: &energy, terms: &[], constraints: &[] };
+    let energy = SpringEnergy::new(surface);
+    let problem =
+        NewtonProblem { system: &system, frames: &frames, energy: &energy, terms: &[], constraints: &[] };
     let report = problem.minimise(&mut flat, options)?;
     placement.finish(surface, &frames, flat, (start, report))
 }
@@ -64,20 +66,20 @@ pub fn springs(
 /// # Errors
 /// As [`symmetric_dirichlet`], and stiffnesses out of range.
 pub fn woven(
-    surface: &Surface,
+    surface: &PieceSurface,
     stiffness: WovenStiffness,
-    options: NewtonOptions,
+    options: StoppingLimits,
     placement: &Placement,
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let energy = Woven::new(stiffness)?;
-    let (system, frames) = (System::new(surface, &[]), Frames::new(surface));
+    let energy = WovenEnergy::new(stiffness)?;
+    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
     let (mut flat, start) = start(surface, &system, &frames)?;
     let upright = upright(surface, &frames, placement, &mut flat);
-    let problem = Problem {
+    let problem = NewtonProblem {
         system: &system,
         frames: &frames,
-        energy: &energy as &dyn Energy,
+        energy: &energy as &dyn EnergyDensity,
         terms: &[],
         constraints: &upright,
     };
@@ -87,7 +89,7 @@ pub fn woven(
 
 /// Turns the grain up, and gives the equation that keeps it there.
 pub(crate) fn upright(
-    surface: &Surface,
+    surface: &PieceSurface,
     frames: &Frames,
     placement: &Placement,
     flat: &mut [Point2<f64>],

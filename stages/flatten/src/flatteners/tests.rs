@@ -1,22 +1,22 @@
 use super::*;
 use crate::energy::WovenStiffness;
 use crate::frames::flat_area;
-use crate::newton::NewtonOptions;
-use crate::shapes::{Mesh, apart, bump, cylinder, grid, surface};
+use crate::newton::StoppingLimits;
+use crate::shapes::{PlainMesh, apart, bump, cylinder, grid, surface};
 use nalgebra::{Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 
-type Method = fn(&Surface, &Placement) -> Result<Flattening, FlattenError>;
+type Method = fn(&PieceSurface, &Placement) -> Result<Flattening, FlattenError>;
 
 const METHODS: [(&str, Method); 5] = [
     ("lscm", lscm),
     ("arap", |s, p| arap(s, ArapOptions::default(), p)),
-    ("symmetric_dirichlet", |s, p| symmetric_dirichlet(s, NewtonOptions::default(), p)),
-    ("springs", |s, p| springs(s, NewtonOptions::default(), p)),
-    ("woven", |s, p| woven(s, WovenStiffness::COTTON, NewtonOptions::default(), p)),
+    ("symmetric_dirichlet", |s, p| symmetric_dirichlet(s, StoppingLimits::default(), p)),
+    ("springs", |s, p| springs(s, StoppingLimits::default(), p)),
+    ("woven", |s, p| woven(s, WovenStiffness::COTTON, StoppingLimits::default(), p)),
 ];
 
-fn flat(method: Method, mesh: Mesh, placement: &Placement) -> (Surface, Flattening) {
+fn flat(method: Method, mesh: PlainMesh, placement: &Placement) -> (PieceSurface, Flattening) {
     let s = surface(mesh);
     let flat = method(&s, placement).unwrap_or_else(|e| unreachable!("{e}"));
     (s, flat)
@@ -106,7 +106,7 @@ fn woven_cloth_strains_its_threads_less_than_half() {
 fn arap_pairs_lead_to_the_same_minimum() {
     let s = surface(bump(20, 20, 0.8));
     let after = |pairs| {
-        let newton = NewtonOptions { tolerance: 1e-15, ..NewtonOptions::default() };
+        let newton = StoppingLimits { tolerance: 1e-15, ..StoppingLimits::default() };
         arap(&s, ArapOptions { pairs, newton }, &Placement::default())
             .map(|f| f.report.energy)
             .unwrap_or(f64::NAN)
@@ -173,7 +173,7 @@ proptest! {
         which in 0usize..5,
     ) {
         let places = places.iter().map(|&p| Point3::from(p)).collect();
-        if let Ok(s) = Surface::new(places, triangles)
+        if let Ok(s) = PieceSurface::new(places, triangles)
             && let Ok(flat) = METHODS[which].1(&s, &Placement::default()) {
             prop_assert!(flat.points.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
         }

@@ -2,19 +2,22 @@
 
 use super::facing::inside_out;
 use super::seams::find_seams;
-use super::{Piece, Pieces};
+use super::{SurfacePiece, SurfacePieces};
 use crate::error::SurfaceError;
 use crate::surface::{
-    FREE, Opposite, Surface, check, component_count, components, corner_vertices, edge_key, orient_all,
-    sorted_edges, turn_marked,
+    FREE, OppositeEdges, PieceSurface, check, component_count, components, corner_vertices, edge_key,
+    orient_all, sorted_edges, turn_marked,
 };
 use nalgebra::Point3;
 
 /// The connected components of a mesh, cut nowhere.
 ///
 /// # Errors
-/// The faults of [`Surface::new`] but a second component.
-pub fn split_components(positions: &[Point3<f64>], triangles: &[[u32; 3]]) -> Result<Pieces, SurfaceError> {
+/// The faults of [`PieceSurface::new`] but a second component.
+pub fn split_components(
+    positions: &[Point3<f64>],
+    triangles: &[[u32; 3]],
+) -> Result<SurfacePieces, SurfaceError> {
     islands_by_group(positions, triangles, &vec![0; triangles.len()])
 }
 
@@ -22,12 +25,12 @@ pub fn split_components(positions: &[Point3<f64>], triangles: &[[u32; 3]]) -> Re
 /// OBJ's `f v/vt`.
 ///
 /// # Errors
-/// [`SurfaceError::LengthMismatch`], and the faults of [`Surface::new`] of any piece.
+/// [`SurfaceError::LengthMismatch`], and the faults of [`PieceSurface::new`] of any piece.
 pub fn islands_by_uv(
     positions: &[Point3<f64>],
     triangles: &[[u32; 3]],
     uv: &[[u32; 3]],
-) -> Result<Pieces, SurfaceError> {
+) -> Result<SurfacePieces, SurfaceError> {
     same_length("uv", uv.len(), triangles.len())?;
     check(positions, triangles)?;
     let label = |h: u32| {
@@ -48,7 +51,7 @@ pub fn islands_by_group(
     positions: &[Point3<f64>],
     triangles: &[[u32; 3]],
     groups: &[u32],
-) -> Result<Pieces, SurfaceError> {
+) -> Result<SurfacePieces, SurfaceError> {
     same_length("groups", groups.len(), triangles.len())?;
     check(positions, triangles)?;
     gather(positions, triangles, &joined(triangles, |h| [groups[h as usize / 3], 0])?)
@@ -64,7 +67,7 @@ pub fn islands_by_labels(
     positions: &[Point3<f64>],
     triangles: &[[u32; 3]],
     labels: &[[u32; 2]],
-) -> Result<Pieces, SurfaceError> {
+) -> Result<SurfacePieces, SurfaceError> {
     same_length("labels", labels.len(), 3 * triangles.len())?;
     check(positions, triangles)?;
     gather(positions, triangles, &joined(triangles, |h| labels[h as usize])?)
@@ -74,12 +77,12 @@ pub fn islands_by_labels(
 /// be marked.
 ///
 /// # Errors
-/// [`SurfaceError::NoSuchEdge`], and the faults of [`Surface::new`] of any piece.
+/// [`SurfaceError::NoSuchEdge`], and the faults of [`PieceSurface::new`] of any piece.
 pub fn islands_by_seams(
     positions: &[Point3<f64>],
     triangles: &[[u32; 3]],
     seams: &[[u32; 2]],
-) -> Result<Pieces, SurfaceError> {
+) -> Result<SurfacePieces, SurfaceError> {
     check(positions, triangles)?;
     let edges = sorted_edges(triangles);
     let mut marked: Vec<u64> = Vec::with_capacity(seams.len());
@@ -105,7 +108,7 @@ fn same_length(what: &'static str, found: usize, wanted: usize) -> Result<(), Su
 }
 
 /// Pairs half-edges of the same vertices and the same label.
-fn joined(triangles: &[[u32; 3]], label: impl Fn(u32) -> [u32; 2]) -> Result<Opposite, SurfaceError> {
+fn joined(triangles: &[[u32; 3]], label: impl Fn(u32) -> [u32; 2]) -> Result<OppositeEdges, SurfaceError> {
     let mut opposite = vec![FREE; 3 * triangles.len()];
     let mut labelled: Vec<(u64, [u32; 2], u32)> =
         sorted_edges(triangles).into_iter().map(|(key, h)| (key, label(h), h)).collect();
@@ -131,7 +134,7 @@ fn gather(
     positions: &[Point3<f64>],
     triangles: &[[u32; 3]],
     opposite: &[u32],
-) -> Result<Pieces, SurfaceError> {
+) -> Result<SurfacePieces, SurfaceError> {
     let (mut triangles, mut opposite) = (triangles.to_vec(), opposite.to_vec());
     let component = components(&opposite);
     let mut turned = orient_all(&mut triangles, &mut opposite, &component)?;
@@ -154,7 +157,7 @@ fn gather(
         pieces.push(piece(positions, &corners.triangles, &corners.sources, list, turned, &mut local)?);
     }
     let seams = find_seams(&pieces);
-    Ok(Pieces { pieces, seams })
+    Ok(SurfacePieces { pieces, seams })
 }
 
 fn piece(
@@ -164,7 +167,7 @@ fn piece(
     members: Vec<u32>,
     turned: usize,
     local: &mut [u32],
-) -> Result<Piece, SurfaceError> {
+) -> Result<SurfacePiece, SurfaceError> {
     let (mut places, mut vertices) = (Vec::new(), Vec::new());
     let mut mesh = Vec::with_capacity(members.len());
     for &t in &members {
@@ -177,9 +180,9 @@ fn piece(
             local[v as usize]
         }));
     }
-    let surface = Surface::new(places, mesh).map_err(|e| in_garment(e, &members, &vertices))?;
+    let surface = PieceSurface::new(places, mesh).map_err(|e| in_garment(e, &members, &vertices))?;
     let vertices = surface.sources().iter().map(|&v| vertices[v as usize]).collect();
-    Ok(Piece { surface: surface.with_turned(turned), vertices, triangles: members })
+    Ok(SurfacePiece { surface: surface.with_turned(turned), vertices, triangles: members })
 }
 
 /// The fault of a piece by the numbers of the garment.

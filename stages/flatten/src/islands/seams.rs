@@ -1,6 +1,6 @@
 //! Seams: boundary edges of pieces that are the same edge of the garment, joined into chains.
 
-use super::Piece;
+use super::SurfacePiece;
 use crate::surface::edge_key;
 
 /// A chain of boundary vertices of one piece, in order.
@@ -14,7 +14,7 @@ pub struct Chain {
 
 /// Two chains whose vertices are, one by one, the same vertices of the garment.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Seam {
+pub struct SurfaceSeam {
     /// The first chain, along its piece's boundary.
     pub a: Chain,
     /// The second chain, against its piece's boundary.
@@ -23,7 +23,7 @@ pub struct Seam {
 
 /// A boundary edge: its garment edge, its piece, and its loop and place there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Edge {
+struct BoundaryEdge {
     key: u64,
     piece: usize,
     of_loop: usize,
@@ -32,17 +32,17 @@ struct Edge {
 
 /// An edge that has a partner on another boundary.
 #[derive(Debug, Clone, Copy)]
-struct Pair {
-    a: Edge,
-    b: Edge,
+struct EdgePair {
+    a: BoundaryEdge,
+    b: BoundaryEdge,
 }
 
 /// All seams of pieces whose vertices know the garment's. Where three boundaries or more share an
 /// edge, the first is paired with each.
-pub(super) fn find_seams(pieces: &[Piece]) -> Vec<Seam> {
+pub(super) fn find_seams(pieces: &[SurfacePiece]) -> Vec<SurfaceSeam> {
     let mut pairs = pair_edges(pieces);
     pairs.sort_by_key(|p| (p.a.piece, p.a.of_loop, p.a.place, p.b));
-    let mut runs: Vec<Vec<Pair>> = Vec::new();
+    let mut runs: Vec<Vec<EdgePair>> = Vec::new();
     for pair in pairs {
         match runs
             .iter_mut()
@@ -58,37 +58,37 @@ pub(super) fn find_seams(pieces: &[Piece]) -> Vec<Seam> {
     runs.iter().map(|run| seam(pieces, run)).collect()
 }
 
-fn pair_edges(pieces: &[Piece]) -> Vec<Pair> {
+fn pair_edges(pieces: &[SurfacePiece]) -> Vec<EdgePair> {
     let mut edges = Vec::new();
     for (piece, p) in pieces.iter().enumerate() {
         for (of_loop, vertices) in p.surface.loops().iter().enumerate() {
             for place in 0..vertices.len() {
                 let [a, b] = [vertices[place], vertices[(place + 1) % vertices.len()]];
                 let key = edge_key(p.vertices[a as usize], p.vertices[b as usize]);
-                edges.push(Edge { key, piece, of_loop, place });
+                edges.push(BoundaryEdge { key, piece, of_loop, place });
             }
         }
     }
     edges.sort_unstable();
     let mut pairs = Vec::new();
     for group in edges.chunk_by(|a, b| a.key == b.key) {
-        pairs.extend(group[1..].iter().map(|&b| Pair { a: group[0], b }));
+        pairs.extend(group[1..].iter().map(|&b| EdgePair { a: group[0], b }));
     }
     pairs
 }
 
 /// Whether `next` goes on along the first boundary where `last` ends, and against the second.
-fn follows(pieces: &[Piece], last: &Pair, next: &Pair) -> bool {
-    let same = |x: &Edge, y: &Edge| (x.piece, x.of_loop) == (y.piece, y.of_loop);
+fn follows(pieces: &[SurfacePiece], last: &EdgePair, next: &EdgePair) -> bool {
+    let same = |x: &BoundaryEdge, y: &BoundaryEdge| (x.piece, x.of_loop) == (y.piece, y.of_loop);
     if !same(&last.a, &next.a) || !same(&last.b, &next.b) {
         return false;
     }
-    let after = |e: &Edge| (e.place + 1) % pieces[e.piece].surface.loops()[e.of_loop].len();
+    let after = |e: &BoundaryEdge| (e.place + 1) % pieces[e.piece].surface.loops()[e.of_loop].len();
     after(&last.a) == next.a.place && after(&next.b) == last.b.place
 }
 
 /// A run may go on over the place where its loop begins.
-fn join_ends(pieces: &[Piece], runs: &mut Vec<Vec<Pair>>) {
+fn join_ends(pieces: &[SurfacePiece], runs: &mut Vec<Vec<EdgePair>>) {
     let mut i = 0;
     while i < runs.len() {
         let goes_on = |j: usize| match (runs[i].last(), runs[j].first()) {
@@ -107,8 +107,8 @@ fn join_ends(pieces: &[Piece], runs: &mut Vec<Vec<Pair>>) {
     }
 }
 
-fn seam(pieces: &[Piece], run: &[Pair]) -> Seam {
-    let vertex = |e: &Edge, step: usize| {
+fn seam(pieces: &[SurfacePiece], run: &[EdgePair]) -> SurfaceSeam {
+    let vertex = |e: &BoundaryEdge, step: usize| {
         let vertices = &pieces[e.piece].surface.loops()[e.of_loop];
         vertices[(e.place + step) % vertices.len()]
     };
@@ -117,5 +117,8 @@ fn seam(pieces: &[Piece], run: &[Pair]) -> Seam {
         a.push(vertex(&pair.a, 1));
         b.push(vertex(&pair.b, 0));
     }
-    Seam { a: Chain { piece: run[0].a.piece, vertices: a }, b: Chain { piece: run[0].b.piece, vertices: b } }
+    SurfaceSeam {
+        a: Chain { piece: run[0].a.piece, vertices: a },
+        b: Chain { piece: run[0].b.piece, vertices: b },
+    }
 }

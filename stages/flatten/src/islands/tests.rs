@@ -80,8 +80,9 @@ fn a_piece_that_shows_its_wrong_side_is_turned() {
     let Ok(garment) = islands_by_group(&places, &triangles, &groups) else { unreachable!() };
     assert_eq!(garment.pieces.iter().map(|p| p.surface.repairs().turned).collect::<Vec<_>>(), [1, 24]);
     assert_eq!(garment.seams.len(), 2);
-    let outward =
-        |p: &Piece| p.surface.area_vector(0).dot(&p.surface.positions()[0].coords.xz().insert_row(1, 0.0));
+    let outward = |p: &SurfacePiece| {
+        p.surface.area_vector(0).dot(&p.surface.positions()[0].coords.xz().insert_row(1, 0.0))
+    };
     // The right side of this tube is its inside.
     assert!(garment.pieces.iter().all(|p| outward(p) < 0.0));
 }
@@ -89,7 +90,8 @@ fn a_piece_that_shows_its_wrong_side_is_turned() {
 #[test]
 fn faults_are_named_by_the_garment() {
     let (places, triangles, groups) = tube();
-    let text = |r: Result<Pieces, crate::SurfaceError>| r.map_or_else(|e| e.to_string(), |_| String::new());
+    let text =
+        |r: Result<SurfacePieces, crate::SurfaceError>| r.map_or_else(|e| e.to_string(), |_| String::new());
     assert_eq!(
         text(islands_by_group(&places, &triangles, &groups[1..])),
         "groups has 47 entries, but 48 are wanted"

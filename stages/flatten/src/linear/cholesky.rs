@@ -19,14 +19,14 @@ use faer::traits::ComplexField;
 use faer::{Conj, MatMut, Par, Side};
 
 /// A factor that can be renewed for other values of the same graph.
-pub(crate) struct Cholesky<T> {
+pub(crate) struct CholeskyFactor<T> {
     pattern: SymbolicSparseColMat<u32>,
     symbolic: SymbolicCholesky<u32>,
     factor: Vec<T>,
     workspace: MemBuffer,
 }
 
-impl<T: ComplexField + Copy> Cholesky<T> {
+impl<T: ComplexField + Copy> CholeskyFactor<T> {
     /// Analyses the pattern for `width` numbers a vertex, 1 or 2; `order` lists the vertices in the
     /// order of elimination.
     ///

@@ -8,6 +8,6 @@ mod graph;
 mod tests;
 mod vectors;
 
-pub(crate) use cholesky::{Cholesky, block_slots, slot};
+pub(crate) use cholesky::{CholeskyFactor, block_slots, slot};
 pub(crate) use dissection::elimination_order;
 pub(crate) use graph::Graph;

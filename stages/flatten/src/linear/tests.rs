@@ -33,7 +33,7 @@ fn a_laplacian_is_solved() {
             (near.len() as f64 + 1.0) * exact[i] - near.iter().map(|&j| exact[j as usize]).sum::<f64>()
         })
         .collect();
-    let solved = Cholesky::analyse(&graph, 1, &order).and_then(|mut factor| {
+    let solved = CholeskyFactor::analyse(&graph, 1, &order).and_then(|mut factor| {
         factor.factor(&values)?;
         factor.solve(&mut b)
     });
@@ -45,8 +45,8 @@ fn a_laplacian_is_solved() {
 fn a_matrix_that_is_not_positive_is_refused() {
     let graph = Graph::new(3, &[[0, 1, 2]], &[]);
     let order = [0, 1, 2];
-    let factored =
-        Cholesky::analyse(&graph, 1, &order).and_then(|mut f| f.factor(&[1.0, 5.0, 0.0, 1.0, 0.0, 1.0]));
+    let factored = CholeskyFactor::analyse(&graph, 1, &order)
+        .and_then(|mut f| f.factor(&[1.0, 5.0, 0.0, 1.0, 0.0, 1.0]));
     let error = factored.err().unwrap();
     assert!(error.to_string().starts_with("the system of 3 unknowns could not be factored ("), "{error}");
     assert_eq!(error.remedy().unwrap(), "look for slivers and remesh");

@@ -3,7 +3,7 @@
 //! Triangles are evaluated in parallel and added one after the other, so the bits are the same for
 //! any number of threads.
 
-use super::{Problem, RIGID};
+use super::{NewtonProblem, RIGID};
 use crate::energy::Hessian;
 use crate::frames::corners;
 use crate::linear::block_slots;
@@ -21,13 +21,13 @@ pub(super) struct Assembly {
     pairs: Vec<[[u32; 2]; 3]>,
     term_pairs: Vec<[[u32; 2]; 3]>,
     rigid: Vec<f64>,
-    batch: Vec<Element>,
+    batch: Vec<ElementTerms>,
 }
 
 /// One triangle's energy, gradient by corner, diagonal blocks, and blocks of corners (0, 1), (1,
 /// 2), (2, 0).
 #[derive(Clone, Copy)]
-struct Element {
+struct ElementTerms {
     value: f64,
     gradient: [Vector2<f64>; 3],
     diagonal: [Matrix2<f64>; 3],
@@ -35,7 +35,7 @@ struct Element {
 }
 
 impl Assembly {
-    pub(super) fn new(problem: &Problem<'_>) -> Self {
+    pub(super) fn new(problem: &NewtonProblem<'_>) -> Self {
         let graph = problem.system.graph();
         let diagonals = (0..graph.vertices()).map(|i| block_slots(graph, i).map(|s| s as u32)).collect();
         let slots = |[a, b]: [u32; 2]| {
@@ -67,7 +67,12 @@ impl Assembly {
     }
 
     /// Sums everything up at `q`; returns the energy.
-    pub(super) fn evaluate(&mut self, problem: &Problem<'_>, q: &[Point2<f64>], wanted: Hessian) -> f64 {
+    pub(super) fn evaluate(
+        &mut self,
+        problem: &NewtonProblem<'_>,
+        q: &[Point2<f64>],
+        wanted: Hessian,
+    ) -> f64 {
         self.values.fill(0.0);
         self.gradient.fill(0.0);
         for v in 0..self.rigid.len() {
@@ -103,7 +108,7 @@ impl Assembly {
         self.diagonals.iter().flatten().for_each(|&s| self.values[s as usize] += shift);
     }
 
-    fn add(&mut self, problem: &Problem<'_>, t: usize, e: &Element) {
+    fn add(&mut self, problem: &NewtonProblem<'_>, t: usize, e: &ElementTerms) {
         let corners = problem.system.triangles()[t];
         for k in 0..3 {
             self.add_gradient(corners[k], &e.gradient[k]);
@@ -113,7 +118,7 @@ impl Assembly {
         }
     }
 
-    fn add_terms(&mut self, problem: &Problem<'_>, q: &[Point2<f64>]) -> f64 {
+    fn add_terms(&mut self, problem: &NewtonProblem<'_>, q: &[Point2<f64>]) -> f64 {
         let mut energy = 0.0;
         for (i, term) in problem.terms.iter().enumerate() {
             energy += term.value(q);
@@ -156,7 +161,7 @@ impl Assembly {
 }
 
 /// The energy alone.
-pub(super) fn energy_at(problem: &Problem<'_>, q: &[Point2<f64>]) -> f64 {
+pub(super) fn energy_at(problem: &NewtonProblem<'_>, q: &[Point2<f64>]) -> f64 {
     let triangles = problem.system.triangles();
     let density = |t: usize| {
         let j = problem.frames.map(t, corners(q, triangles[t]));
@@ -166,7 +171,7 @@ pub(super) fn energy_at(problem: &Problem<'_>, q: &[Point2<f64>]) -> f64 {
     densities.iter().sum::<f64>() + problem.terms.iter().map(|t| t.value(q)).sum::<f64>()
 }
 
-fn element(problem: &Problem<'_>, q: &[Point2<f64>], t: usize, wanted: Hessian) -> Element {
+fn element(problem: &NewtonProblem<'_>, q: &[Point2<f64>], t: usize, wanted: Hessian) -> ElementTerms {
     let j = problem.frames.map(t, corners(q, problem.system.triangles()[t]));
     let (share, d) = (problem.frames.share(t), problem.energy.derivatives(t, &j, wanted));
     let [_, b, c] = problem.frames.gradients(t);
@@ -190,7 +195,7 @@ fn element(problem: &Problem<'_>, q: &[Point2<f64>], t: usize, wanted: Hessian) 
             * share
     };
     let (gb, gc) = (pull(&b), pull(&c));
-    Element {
+    ElementTerms {
         value: share * d.value,
         gradient: [-(gb + gc), gb, gc],
         diagonal: [aa, bb, cc],

@@ -4,7 +4,7 @@
 //! quadratic each, Smith and Schaefer 2015); from nine tenths of it, at most 1, the length is
 //! halved until the energy has fallen by a share of what the slope promises.
 
-use super::Problem;
+use super::NewtonProblem;
 use super::assembly::energy_at;
 use nalgebra::{Point2, Vector2};
 use rayon::prelude::*;
@@ -19,8 +19,8 @@ const ENOUGH: f64 = 1e-4;
 const MOST_HALVINGS: usize = 40;
 
 /// What a step is measured against.
-pub(super) struct Trial<'a, 'b> {
-    pub(super) problem: &'a Problem<'b>,
+pub(super) struct StepTrial<'a, 'b> {
+    pub(super) problem: &'a NewtonProblem<'b>,
     /// Energy at the start.
     pub(super) energy: f64,
     /// Rate of change of energy and penalty, negative.
@@ -29,7 +29,7 @@ pub(super) struct Trial<'a, 'b> {
     pub(super) penalty: f64,
 }
 
-impl Trial<'_, '_> {
+impl StepTrial<'_, '_> {
     /// The length to go, or none if no length helps.
     pub(super) fn search(&self, q: &[Point2<f64>], direction: &[Vector2<f64>]) -> Option<f64> {
         let falls = self.slope < 0.0;

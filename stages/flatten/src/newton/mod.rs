@@ -19,20 +19,20 @@ mod tests;
 
 pub(crate) use constraint::Constraint;
 pub(crate) use constraint::chain_length;
-pub(crate) use term::Term;
+pub(crate) use term::QuadraticTerm;
 
-use crate::energy::{Energy, Hessian};
+use crate::energy::{EnergyDensity, Hessian};
 use crate::error::FlattenError;
 use crate::frames::Frames;
-use crate::linear::Cholesky;
-use crate::system::System;
+use crate::linear::CholeskyFactor;
+use crate::system::PieceSystem;
 use assembly::Assembly;
-use line_search::Trial;
+use line_search::StepTrial;
 use nalgebra::{DMatrix, DVector, Point2, Vector2};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NewtonOptions {
+pub struct StoppingLimits {
     /// Most iterations, 0 or more.
     pub iterations: usize,
     /// The energy by area (0.0002 is about a strain of one per cent everywhere) that one more step
@@ -40,13 +40,13 @@ pub struct NewtonOptions {
     pub tolerance: f64,
 }
 
-impl Default for NewtonOptions {
+impl Default for StoppingLimits {
     fn default() -> Self {
         Self { iterations: 100, tolerance: 1e-9 }
     }
 }
 
-impl NewtonOptions {
+impl StoppingLimits {
     pub(crate) fn check(self) -> Result<Self, FlattenError> {
         if self.tolerance > 0.0 && self.tolerance.is_finite() {
             return Ok(self);
@@ -58,7 +58,7 @@ impl NewtonOptions {
 
 /// What the method did.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NewtonReport {
+pub struct NewtonOutcome {
     /// Steps made.
     pub iterations: usize,
     /// The energy by area at the end.
@@ -91,20 +91,20 @@ const MET: f64 = 1e-7;
 const RIGID: f64 = 1e-4;
 
 /// What is minimised.
-pub(crate) struct Problem<'a> {
+pub(crate) struct NewtonProblem<'a> {
     /// The surface.
-    pub system: &'a System,
+    pub system: &'a PieceSystem,
     /// Its triangles in their planes.
     pub frames: &'a Frames,
     /// The energy of the triangles.
-    pub energy: &'a dyn Energy,
+    pub energy: &'a dyn EnergyDensity,
     /// Quadratic terms, their vertices coupled in the system's graph.
-    pub terms: &'a [Term],
+    pub terms: &'a [QuadraticTerm],
     /// Constraints, few of them.
     pub constraints: &'a [Constraint],
 }
 
-impl Problem<'_> {
+impl NewtonProblem<'_> {
     /// The energy at `q`; infinite if a triangle is flipped.
     #[must_use]
     pub(crate) fn energy_at(&self, q: &[Point2<f64>]) -> f64 {
@@ -119,11 +119,11 @@ impl Problem<'_> {
     pub(crate) fn minimise(
         &self,
         q: &mut [Point2<f64>],
-        options: NewtonOptions,
-    ) -> Result<NewtonReport, FlattenError> {
+        options: StoppingLimits,
+    ) -> Result<NewtonOutcome, FlattenError> {
         let options = options.check()?;
         let mut assembly = Assembly::new(self);
-        let mut factor = Cholesky::analyse(self.system.graph(), 2, self.system.order())?;
+        let mut factor = CholeskyFactor::analyse(self.system.graph(), 2, self.system.order())?;
         let mut penalty = 0.0;
         let mut iterations = 0;
         let (mut near_minimum, mut near_share) = (false, NEAR);
@@ -139,7 +139,7 @@ impl Problem<'_> {
             if done && !near {
                 return Ok(report(iterations, energy, &step, false));
             }
-            let trial = Trial { problem: self, energy, slope: step.slope, penalty };
+            let trial = StepTrial { problem: self, energy, slope: step.slope, penalty };
             let Some(length) = trial.search(q, &step.direction) else {
                 return Ok(report(iterations, energy, &step, near));
             };
@@ -156,7 +156,7 @@ impl Problem<'_> {
     fn factor(
         &self,
         assembly: &mut Assembly,
-        factor: &mut Cholesky<f64>,
+        factor: &mut CholeskyFactor<f64>,
         q: &[Point2<f64>],
         near_minimum: bool,
     ) -> Result<(f64, bool), FlattenError> {
@@ -183,11 +183,11 @@ impl Problem<'_> {
     /// Newton's direction, and what it promises.
     fn step(
         &self,
-        factor: &Cholesky<f64>,
+        factor: &CholeskyFactor<f64>,
         gradient: &[f64],
         q: &[Point2<f64>],
         penalty: &mut f64,
-    ) -> Result<Step, FlattenError> {
+    ) -> Result<NewtonStep, FlattenError> {
         let mut d: Vec<f64> = gradient.iter().map(|g| -g).collect();
         factor.solve(&mut d)?;
         let mut violation = 0.0;
@@ -202,7 +202,7 @@ impl Problem<'_> {
         }
         let drop = -dot(gradient, &d);
         let direction = d.chunks_exact(2).map(|p| Vector2::new(p[0], p[1])).collect();
-        Ok(Step { direction, remaining: drop.abs() / 2.0, violation, slope: -drop - weighted })
+        Ok(NewtonStep { direction, remaining: drop.abs() / 2.0, violation, slope: -drop - weighted })
     }
 
     /// Values of all constraints, and their gradients as columns.
@@ -220,7 +220,7 @@ impl Problem<'_> {
     }
 }
 
-struct Step {
+struct NewtonStep {
     direction: Vec<Vector2<f64>>,
     /// Half of `-g.d`.
     remaining: f64,
@@ -230,14 +230,14 @@ struct Step {
     slope: f64,
 }
 
-fn report(iterations: usize, energy: f64, step: &Step, converged: bool) -> NewtonReport {
-    NewtonReport { iterations, energy, remaining: step.remaining, converged }
+fn report(iterations: usize, energy: f64, step: &NewtonStep, converged: bool) -> NewtonOutcome {
+    NewtonOutcome { iterations, energy, remaining: step.remaining, converged }
 }
 
 /// Adds to the free step `d` what makes it meet the linearised constraints, by their Schur
 /// complement; returns the multipliers.
 fn meet(
-    factor: &Cholesky<f64>,
+    factor: &CholeskyFactor<f64>,
     values: &DVector<f64>,
     columns: &[Vec<f64>],
     d: &mut [f64],

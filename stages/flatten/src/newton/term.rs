@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Point2, Vector2};
 
 /// One term. Vertices that are not needed repeat another with the coefficient 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Term {
+pub(crate) struct QuadraticTerm {
     /// The vertices.
     pub vertices: [u32; 3],
     /// Their coefficients.
@@ -21,7 +21,7 @@ pub(crate) struct Term {
     pub normal: Option<Vector2<f64>>,
 }
 
-impl Term {
+impl QuadraticTerm {
     /// Holds a vertex at a place.
     #[must_use]
     pub(crate) fn at(vertex: u32, place: Point2<f64>, weight: f64) -> Self {

@@ -8,13 +8,13 @@
 //! O(n).
 
 use crate::frames::local_edges;
-use crate::surface::{FREE, Surface};
+use crate::surface::{FREE, PieceSurface};
 use nalgebra::{Point2, Vector2, Vector3};
 use std::collections::VecDeque;
 
 /// Flat places in the caller's unit.
 #[must_use]
-pub(crate) fn neighbour_layout(surface: &Surface) -> Vec<Point2<f64>> {
+pub(crate) fn neighbour_layout(surface: &PieceSurface) -> Vec<Point2<f64>> {
     let mut flat: Vec<Option<Point2<f64>>> = vec![None; surface.positions().len()];
     let seed = middle_triangle(surface);
     let [a, b, c] = surface.triangles()[seed].map(|v| v as usize);
@@ -39,7 +39,7 @@ pub(crate) fn neighbour_layout(surface: &Surface) -> Vec<Point2<f64>> {
 }
 
 /// Places the corner across from half-edge `h`, both ends of which are placed.
-fn place_third(surface: &Surface, h: u32, flat: &mut [Option<Point2<f64>>]) {
+fn place_third(surface: &PieceSurface, h: u32, flat: &mut [Option<Point2<f64>>]) {
     let (t, k) = (h as usize / 3, h as usize % 3);
     let [a, b, c] = [k, (k + 1) % 3, (k + 2) % 3].map(|k| surface.triangles()[t][k] as usize);
     let (Some(p), Some(q), None) = (flat[a], flat[b], flat[c]) else { return };
@@ -53,7 +53,7 @@ fn place_third(surface: &Surface, h: u32, flat: &mut [Option<Point2<f64>>]) {
 }
 
 /// The triangle nearest the middle of the surface's area.
-fn middle_triangle(surface: &Surface) -> usize {
+fn middle_triangle(surface: &PieceSurface) -> usize {
     let centre = |t: usize| {
         let [a, b, c] = surface.triangles()[t].map(|v| surface.positions()[v as usize].coords);
         (a + b + c) / 3.0

@@ -8,9 +8,9 @@
 
 use crate::error::FlattenError;
 use crate::frames::Frames;
-use crate::linear::{Cholesky, slot};
-use crate::surface::Surface;
-use crate::system::System;
+use crate::linear::{CholeskyFactor, slot};
+use crate::surface::PieceSurface;
+use crate::system::PieceSystem;
 use faer::c64;
 use nalgebra::{Point2, Point3};
 
@@ -19,8 +19,8 @@ use nalgebra::{Point2, Point3};
 /// # Errors
 /// [`FlattenError::Factorization`] if the system has no factor.
 pub(super) fn lscm_map(
-    surface: &Surface,
-    system: &System,
+    surface: &PieceSurface,
+    system: &PieceSystem,
     frames: &Frames,
 ) -> Result<Vec<Point2<f64>>, FlattenError> {
     let graph = system.graph();
@@ -39,20 +39,20 @@ pub(super) fn lscm_map(
     let held = far_apart(surface);
     let places = [c64::new(0.0, 0.0), c64::new(1.0, 0.0)];
     let mut z = hold(system, &mut values, held, places);
-    let mut factor = Cholesky::analyse(graph, 1, system.order())?;
+    let mut factor = CholeskyFactor::analyse(graph, 1, system.order())?;
     factor.factor(&values)?;
     factor.solve(&mut z)?;
     Ok(z.iter().map(|z| Point2::new(z.re, z.im)).collect())
 }
 
 /// Which of the lower vertex's pairs this is.
-fn place(system: &System, i: u32, j: u32) -> usize {
+fn place(system: &PieceSystem, i: u32, j: u32) -> usize {
     let graph = system.graph();
     graph.pair(i, j).map_or(0, |p| p - graph.start(i.min(j) as usize))
 }
 
 /// Replaces the rows and columns of held vertices by the identity; returns the right-hand side.
-fn hold(system: &System, values: &mut [c64], held: [u32; 2], places: [c64; 2]) -> Vec<c64> {
+fn hold(system: &PieceSystem, values: &mut [c64], held: [u32; 2], places: [c64; 2]) -> Vec<c64> {
     let graph = system.graph();
     let mut right = vec![c64::new(0.0, 0.0); graph.vertices()];
     let place_of = |v: u32| held.iter().position(|&h| h == v).map(|k| places[k]);
@@ -80,7 +80,7 @@ fn hold(system: &System, values: &mut [c64], held: [u32; 2], places: [c64; 2]) -
 }
 
 /// Two vertices of the outer boundary far from each other in space.
-fn far_apart(surface: &Surface) -> [u32; 2] {
+fn far_apart(surface: &PieceSurface) -> [u32; 2] {
     let outline = &surface.loops()[0];
     let place = |v: u32| surface.positions()[v as usize];
     let farthest = |from: Point3<f64>| {

@@ -16,17 +16,17 @@ use lscm::lscm_map;
 use projection::projection;
 use tutte::tutte;
 
-use crate::energy::SymmetricDirichlet;
+use crate::energy::SymmetricDirichletEnergy;
 use crate::error::FlattenError;
 use crate::frames::{Frames, corners, flat_area, flipped};
-use crate::newton::{NewtonOptions, Problem};
-use crate::surface::Surface;
-use crate::system::System;
+use crate::newton::{NewtonProblem, StoppingLimits};
+use crate::surface::PieceSurface;
+use crate::system::PieceSystem;
 use nalgebra::Point2;
 
 /// Where a solution started.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
+pub enum StartMethod {
     /// The projection along the mean normal.
     Projection,
     /// Least squares conformal maps (Lévy and others 2002).
@@ -46,7 +46,7 @@ const LEAST_PROJECTED: f64 = 0.3;
 const FAR: f64 = 1.0;
 
 /// When a start has settled enough for other energies to take over.
-const SETTLED: NewtonOptions = NewtonOptions { iterations: 60, tolerance: 1e-3 };
+const SETTLED: StoppingLimits = StoppingLimits { iterations: 60, tolerance: 1e-3 };
 
 /// The cheapest start without flips, in units of [`Frames::unit`].
 ///
@@ -54,13 +54,13 @@ const SETTLED: NewtonOptions = NewtonOptions { iterations: 60, tolerance: 1e-3 }
 /// [`FlattenError::NoStart`] if rounding leaves flips in every one, [`FlattenError::Factorization`]
 /// from Tutte's system.
 pub(crate) fn start(
-    surface: &Surface,
-    system: &System,
+    surface: &PieceSurface,
+    system: &PieceSystem,
     frames: &Frames,
-) -> Result<(Vec<Point2<f64>>, Start), FlattenError> {
+) -> Result<(Vec<Point2<f64>>, StartMethod), FlattenError> {
     let flat = frames.scaled(&projection(surface));
     if least_area_ratio(system, frames, &flat) > LEAST_PROJECTED {
-        return Ok((flat, Start::Projection));
+        return Ok((flat, StartMethod::Projection));
     }
     let (mut flat, start) = conformal_start(surface, system, frames)?;
     settle(system, frames, &mut flat)?;
@@ -68,9 +68,9 @@ pub(crate) fn start(
 }
 
 /// Brings a start that is far from isometric nearer, by the energy that does so in fewest steps.
-fn settle(system: &System, frames: &Frames, flat: &mut [Point2<f64>]) -> Result<(), FlattenError> {
-    let energy = &SymmetricDirichlet;
-    let problem = Problem { system, frames, energy, terms: &[], constraints: &[] };
+fn settle(system: &PieceSystem, frames: &Frames, flat: &mut [Point2<f64>]) -> Result<(), FlattenError> {
+    let energy = &SymmetricDirichletEnergy;
+    let problem = NewtonProblem { system, frames, energy, terms: &[], constraints: &[] };
     if problem.energy_at(flat) > FAR {
         problem.minimise(flat, SETTLED)?;
     }
@@ -83,20 +83,20 @@ fn settle(system: &System, frames: &Frames, flat: &mut [Point2<f64>]) -> Result<
 /// # Errors
 /// As [`start`].
 pub(crate) fn conformal_start(
-    surface: &Surface,
-    system: &System,
+    surface: &PieceSurface,
+    system: &PieceSystem,
     frames: &Frames,
-) -> Result<(Vec<Point2<f64>>, Start), FlattenError> {
+) -> Result<(Vec<Point2<f64>>, StartMethod), FlattenError> {
     // A refused factor of the conformal system is one more reason to take the other start.
     if let Ok(flat) = lscm_map(surface, system, frames) {
         let flat = with_true_area(system, flat);
         if flipped(system.triangles(), &flat).is_empty() {
-            return Ok((flat, Start::Lscm));
+            return Ok((flat, StartMethod::Lscm));
         }
     }
     let flat = with_true_area(system, tutte(surface, frames)?);
     match flipped(system.triangles(), &flat)[..] {
-        [] => Ok((flat, Start::Tutte)),
+        [] => Ok((flat, StartMethod::Tutte)),
         [triangle, ..] => {
             Err(FlattenError::NoStart { flips: flipped(system.triangles(), &flat).len(), triangle })
         }
@@ -104,7 +104,7 @@ pub(crate) fn conformal_start(
 }
 
 /// Scales to the area 1, the whole surface's in units of [`Frames::unit`].
-pub(crate) fn with_true_area(system: &System, mut flat: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
+pub(crate) fn with_true_area(system: &PieceSystem, mut flat: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
     let area = flat_area(system.triangles(), &flat);
     if area > 0.0 && area.is_finite() {
         let scale = 1.0 / area.sqrt();
@@ -114,7 +114,7 @@ pub(crate) fn with_true_area(system: &System, mut flat: Vec<Point2<f64>>) -> Vec
 }
 
 /// The least flat area over true area of all triangles.
-fn least_area_ratio(system: &System, frames: &Frames, flat: &[Point2<f64>]) -> f64 {
+fn least_area_ratio(system: &PieceSystem, frames: &Frames, flat: &[Point2<f64>]) -> f64 {
     let ratio = |(t, &c): (usize, &[u32; 3])| frames.map(t, corners(flat, c)).determinant();
     system.triangles().iter().enumerate().map(ratio).fold(f64::INFINITY, f64::min)
 }

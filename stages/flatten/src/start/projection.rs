@@ -1,11 +1,11 @@
 //! The projection of a surface along its mean normal.
 
-use crate::surface::Surface;
+use crate::surface::PieceSurface;
 use nalgebra::{Point2, Vector3};
 
 /// Flat places in the caller's unit, seen from the right side; the areas are smaller than in space.
 #[must_use]
-pub(super) fn projection(surface: &Surface) -> Vec<Point2<f64>> {
+pub(super) fn projection(surface: &PieceSurface) -> Vec<Point2<f64>> {
     let normal = (0..surface.triangles().len()).fold(Vector3::zeros(), |sum, t| sum + surface.area_vector(t));
     let normal = normal.try_normalize(0.0).unwrap_or_else(Vector3::z);
     let across = Vector3::ith(normal.iamin(), 1.0);

@@ -1,21 +1,21 @@
 use super::*;
 use crate::shapes::{bump, cone, cylinder, grid, surface};
 
-fn ready(mesh: crate::shapes::Mesh) -> (Surface, System, Frames) {
+fn ready(mesh: crate::shapes::PlainMesh) -> (PieceSurface, PieceSystem, Frames) {
     let s = surface(mesh);
-    let (system, frames) = (System::new(&s, &[]), Frames::new(&s));
+    let (system, frames) = (PieceSystem::new(&s, &[]), Frames::new(&s));
     (s, system, frames)
 }
 
 #[test]
 fn a_flat_panel_starts_from_its_projection_and_a_tube_from_conformal_maps() {
     let (s, system, frames) = ready(bump(8, 8, 0.3));
-    assert_eq!(start(&s, &system, &frames).map(|r| r.1), Ok(Start::Projection));
+    assert_eq!(start(&s, &system, &frames).map(|r| r.1), Ok(StartMethod::Projection));
     let (s, system, frames) = ready(grid(40, 8, |u, v| {
         let a = 6.0 * (0.5 - u);
         [-a.sin(), v, a.cos()]
     }));
-    assert_eq!(start(&s, &system, &frames).map(|r| r.1), Ok(Start::Lscm));
+    assert_eq!(start(&s, &system, &frames).map(|r| r.1), Ok(StartMethod::Lscm));
 }
 
 #[test]

@@ -8,8 +8,8 @@
 
 use crate::error::FlattenError;
 use crate::frames::{Frames, flipped};
-use crate::linear::{Cholesky, Graph, elimination_order, slot};
-use crate::surface::Surface;
+use crate::linear::{CholeskyFactor, Graph, elimination_order, slot};
+use crate::surface::PieceSurface;
 use nalgebra::{Point2, Point3};
 
 /// The least weight of a coupling, against 1 of a right isosceles triangle's leg.
@@ -19,7 +19,7 @@ const LEAST_WEIGHT: f64 = 0.05;
 ///
 /// # Errors
 /// [`FlattenError::Factorization`] if the system has no factor.
-pub(super) fn tutte(surface: &Surface, frames: &Frames) -> Result<Vec<Point2<f64>>, FlattenError> {
+pub(super) fn tutte(surface: &PieceSurface, frames: &Frames) -> Result<Vec<Point2<f64>>, FlattenError> {
     let disk = Disk::new(surface);
     let mut flat = disk.embed(surface, |t, k| cotangent(frames, t, k))?;
     if !flipped(surface.triangles(), &flat).is_empty() {
@@ -36,7 +36,7 @@ struct Disk {
 }
 
 impl Disk {
-    fn new(surface: &Surface) -> Self {
+    fn new(surface: &PieceSurface) -> Self {
         let mut places = surface.positions().to_vec();
         let mut triangles = surface.triangles().to_vec();
         for rim in &surface.loops()[1..] {
@@ -54,7 +54,7 @@ impl Disk {
     /// Solves for weights by triangle and corner, each that of the edge across from the corner.
     fn embed(
         &self,
-        surface: &Surface,
+        surface: &PieceSurface,
         weight: impl Fn(usize, usize) -> f64,
     ) -> Result<Vec<Point2<f64>>, FlattenError> {
         let n = self.graph.vertices();
@@ -77,7 +77,7 @@ impl Disk {
                 (right[v], right[n + v]) = (p.x, p.y);
             }
         }
-        let mut factor = Cholesky::analyse(&self.graph, 1, &self.order)?;
+        let mut factor = CholeskyFactor::analyse(&self.graph, 1, &self.order)?;
         factor.factor(&values)?;
         factor.solve(&mut right)?;
         Ok((0..surface.positions().len()).map(|v| Point2::new(right[v], right[n + v])).collect())
@@ -109,7 +109,7 @@ impl Disk {
 }
 
 /// The outer boundary on the unit circle, each edge with its share of the length.
-fn circle(surface: &Surface) -> Vec<(u32, Point2<f64>)> {
+fn circle(surface: &PieceSurface) -> Vec<(u32, Point2<f64>)> {
     let outline = &surface.loops()[0];
     let place = |v: u32| surface.positions()[v as usize];
     let next = outline.iter().cycle().skip(1);

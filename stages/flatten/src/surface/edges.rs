@@ -8,13 +8,13 @@ pub const FREE: u32 = u32::MAX;
 
 /// Half-edge `3 t + k` runs from corner k of triangle t to the next corner; the list gives the
 /// half-edge on the other side, or [`FREE`].
-pub(crate) type Opposite = Vec<u32>;
+pub(crate) type OppositeEdges = Vec<u32>;
 
 /// Pairs the half-edges of a mesh, whichever way its triangles run.
 ///
 /// # Errors
 /// [`SurfaceError::NonManifoldEdge`] for an edge of three triangles or more.
-pub(super) fn opposites(triangles: &[[u32; 3]]) -> Result<Opposite, SurfaceError> {
+pub(super) fn opposites(triangles: &[[u32; 3]]) -> Result<OppositeEdges, SurfaceError> {
     let mut opposite = vec![FREE; 3 * triangles.len()];
     let edges = sorted_edges(triangles);
     for group in edges.chunk_by(|a, b| a.0 == b.0) {

@@ -7,7 +7,7 @@ use super::edges::FREE;
 
 /// The corners of a mesh gathered into vertices.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Corners {
+pub(crate) struct GatheredCorners {
     /// Three vertices a triangle.
     pub triangles: Vec<[u32; 3]>,
     /// For each vertex the vertex of the input that it stands for.
@@ -22,7 +22,7 @@ pub(crate) struct Corners {
 ///
 /// Vertices keep the order of the input; what is split off comes after all others.
 #[must_use]
-pub(crate) fn corner_vertices(triangles: &[[u32; 3]], opposite: &[u32], vertices: usize) -> Corners {
+pub(crate) fn corner_vertices(triangles: &[[u32; 3]], opposite: &[u32], vertices: usize) -> GatheredCorners {
     let class = corner_classes(opposite);
     let mut first = vec![FREE; vertices];
     let mut extra = Vec::new();
@@ -40,7 +40,7 @@ pub(crate) fn corner_vertices(triangles: &[[u32; 3]], opposite: &[u32], vertices
     number(triangles, &class, &first, &extra)
 }
 
-fn number(triangles: &[[u32; 3]], class: &[u32], first: &[u32], extra: &[(u32, u32)]) -> Corners {
+fn number(triangles: &[[u32; 3]], class: &[u32], first: &[u32], extra: &[(u32, u32)]) -> GatheredCorners {
     let mut of_class = vec![FREE; class.len()];
     let mut sources = Vec::with_capacity(first.len() + extra.len());
     let used = first.iter().enumerate().filter(|(_, c)| **c != FREE).map(|(v, &c)| (c, v as u32));
@@ -51,7 +51,7 @@ fn number(triangles: &[[u32; 3]], class: &[u32], first: &[u32], extra: &[(u32, u
     let vertex = |t: usize, k: usize| of_class[class[3 * t + k] as usize];
     let triangles = (0..triangles.len()).map(|t| [vertex(t, 0), vertex(t, 1), vertex(t, 2)]).collect();
     let unused = first.iter().filter(|&&c| c == FREE).count();
-    Corners { triangles, sources, split: extra.len(), unused }
+    GatheredCorners { triangles, sources, split: extra.len(), unused }
 }
 
 /// For each corner the lowest corner of its fan.

@@ -17,7 +17,7 @@ mod tests;
 use boundary::boundary_loops;
 pub(crate) use components::{component_count, components};
 pub use edges::FREE;
-pub(crate) use edges::Opposite;
+pub(crate) use edges::OppositeEdges;
 use edges::opposites;
 pub(crate) use edges::{edge_key, sorted_edges};
 pub(crate) use fans::corner_vertices;
@@ -39,13 +39,13 @@ pub const FARTHEST: f64 = 1e60;
 
 /// One piece: connected, oriented, manifold, with a boundary.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Surface {
+pub struct PieceSurface {
     positions: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
     sources: Vec<u32>,
     opposite: Vec<u32>,
     loops: Vec<Vec<u32>>,
-    repairs: Repairs,
+    repairs: SurfaceRepairs,
     /// Triangles, ascending, that were cut otherwise than they lie, with two edges from their first
     /// corner as cut.
     cut: Vec<(u32, [Vector2<f64>; 2])>,
@@ -53,7 +53,7 @@ pub struct Surface {
 
 /// What was mended on the way in.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Repairs {
+pub struct SurfaceRepairs {
     /// Triangles turned to agree with the majority.
     pub turned: usize,
     /// Vertices added where only tips of triangles touched.
@@ -62,7 +62,7 @@ pub struct Repairs {
     pub unused: usize,
 }
 
-impl Surface {
+impl PieceSurface {
     /// Checks and repairs a mesh; triangles keep their numbers, vertices keep theirs unless some
     /// were split or left out.
     ///
@@ -90,7 +90,7 @@ impl Surface {
         if handles > 0 {
             return Err(SurfaceError::Handles { count: handles as usize });
         }
-        let repairs = Repairs { turned, split: corners.split, unused: corners.unused };
+        let repairs = SurfaceRepairs { turned, split: corners.split, unused: corners.unused };
         let positions: Vec<_> = corners.sources.iter().map(|&v| positions[v as usize]).collect();
         loops.sort_by(|a, b| loop_length(&positions, b).total_cmp(&loop_length(&positions, a)));
         Ok(Self {
@@ -144,7 +144,7 @@ impl Surface {
 
     /// What was mended.
     #[must_use]
-    pub fn repairs(&self) -> Repairs {
+    pub fn repairs(&self) -> SurfaceRepairs {
         self.repairs
     }
 

@@ -8,7 +8,7 @@ use super::edges::{FREE, ends};
 use crate::error::SurfaceError;
 
 #[derive(Clone, Copy, PartialEq)]
-enum Turn {
+enum TriangleTurn {
     Unknown,
     Keep,
     Flip,
@@ -37,25 +37,25 @@ pub(crate) fn orient_all(
     let (mut sizes, mut turned) = (vec![0; count], vec![0; count]);
     for (&c, turn) in component.iter().zip(&turns) {
         sizes[c as usize] += 1;
-        turned[c as usize] += usize::from(*turn == Turn::Flip);
+        turned[c as usize] += usize::from(*turn == TriangleTurn::Flip);
     }
     let minority = |c: u32| 2 * turned[c as usize] <= sizes[c as usize];
     for (&c, turn) in component.iter().zip(&mut turns) {
         if !minority(c) {
-            *turn = if *turn == Turn::Flip { Turn::Keep } else { Turn::Flip };
+            *turn = if *turn == TriangleTurn::Flip { TriangleTurn::Keep } else { TriangleTurn::Flip };
         }
     }
-    if turns.contains(&Turn::Flip) {
+    if turns.contains(&TriangleTurn::Flip) {
         turn(triangles, opposite, &turns);
     }
     Ok((0..count).map(|c| turned[c].min(sizes[c] - turned[c])).collect())
 }
 
-fn find_turns(triangles: &[[u32; 3]], opposite: &[u32]) -> Result<Vec<Turn>, SurfaceError> {
-    let mut turns = vec![Turn::Unknown; triangles.len()];
+fn find_turns(triangles: &[[u32; 3]], opposite: &[u32]) -> Result<Vec<TriangleTurn>, SurfaceError> {
+    let mut turns = vec![TriangleTurn::Unknown; triangles.len()];
     for seed in 0..triangles.len() {
-        if turns[seed] == Turn::Unknown {
-            turns[seed] = Turn::Keep;
+        if turns[seed] == TriangleTurn::Unknown {
+            turns[seed] = TriangleTurn::Keep;
             turn_neighbours(triangles, opposite, &mut turns, seed)?;
         }
     }
@@ -66,7 +66,7 @@ fn find_turns(triangles: &[[u32; 3]], opposite: &[u32]) -> Result<Vec<Turn>, Sur
 fn turn_neighbours(
     triangles: &[[u32; 3]],
     opposite: &[u32],
-    turns: &mut [Turn],
+    turns: &mut [TriangleTurn],
     seed: usize,
 ) -> Result<(), SurfaceError> {
     let mut waiting = vec![seed];
@@ -76,9 +76,13 @@ fn turn_neighbours(
                 continue;
             }
             let agree = ends(triangles, h as u32)[0] != ends(triangles, o)[0];
-            let wanted = if agree == (turns[t] == Turn::Keep) { Turn::Keep } else { Turn::Flip };
+            let wanted = if agree == (turns[t] == TriangleTurn::Keep) {
+                TriangleTurn::Keep
+            } else {
+                TriangleTurn::Flip
+            };
             let other = o as usize / 3;
-            if turns[other] == Turn::Unknown {
+            if turns[other] == TriangleTurn::Unknown {
                 turns[other] = wanted;
                 waiting.push(other);
             } else if turns[other] != wanted {
@@ -91,22 +95,23 @@ fn turn_neighbours(
 
 /// Turns the triangles that are marked.
 pub(crate) fn turn_marked(triangles: &mut [[u32; 3]], opposite: &mut [u32], marked: &[bool]) {
-    let turns: Vec<Turn> = marked.iter().map(|&m| if m { Turn::Flip } else { Turn::Keep }).collect();
+    let turns: Vec<TriangleTurn> =
+        marked.iter().map(|&m| if m { TriangleTurn::Flip } else { TriangleTurn::Keep }).collect();
     turn(triangles, opposite, &turns);
 }
 
 /// Swaps the last two corners of the triangles to turn; their half-edges 0 and 2 change places.
-fn turn(triangles: &mut [[u32; 3]], opposite: &mut [u32], turns: &[Turn]) {
+fn turn(triangles: &mut [[u32; 3]], opposite: &mut [u32], turns: &[TriangleTurn]) {
     let moved = |h: u32| {
         let (t, k) = (h / 3, h % 3);
-        if h != FREE && turns[t as usize] == Turn::Flip { 3 * t + 2 - k } else { h }
+        if h != FREE && turns[t as usize] == TriangleTurn::Flip { 3 * t + 2 - k } else { h }
     };
     let old = opposite.to_vec();
     for (h, &o) in old.iter().enumerate() {
         opposite[moved(h as u32) as usize] = if o == FREE { FREE } else { moved(o) };
     }
     for (corners, turn) in triangles.iter_mut().zip(turns) {
-        if *turn == Turn::Flip {
+        if *turn == TriangleTurn::Flip {
             corners.swap(1, 2);
         }
     }

@@ -3,7 +3,7 @@ use crate::shapes::{cone, cylinder, grid, surface};
 use proptest::prelude::*;
 
 fn refused(places: Vec<Point3<f64>>, triangles: Vec<[u32; 3]>) -> String {
-    Surface::new(places, triangles).map_or_else(|e| e.to_string(), |_| "accepted".into())
+    PieceSurface::new(places, triangles).map_or_else(|e| e.to_string(), |_| "accepted".into())
 }
 
 fn points(list: &[[f64; 3]]) -> Vec<Point3<f64>> {
@@ -19,7 +19,7 @@ fn corners() -> Vec<Point3<f64>> {
 fn a_sheet_has_one_boundary_loop_counter_clockwise() {
     let s = surface(grid(2, 1, |u, v| [2.0 * u, v, 0.0]));
     assert_eq!(s.loops(), [vec![0, 1, 2, 5, 4, 3]]);
-    assert_eq!(s.repairs(), Repairs::default());
+    assert_eq!(s.repairs(), SurfaceRepairs::default());
     assert!((s.area() - 2.0).abs() < 1e-15);
 }
 
@@ -69,7 +69,7 @@ fn a_bow_tie_between_arms_of_one_piece_is_split() {
     places[last as usize] = places[first as usize];
     let triangles = triangles.into_iter().map(|t| t.map(|v| if v == last { first } else { v })).collect();
     let s = surface((places, triangles));
-    assert_eq!(s.repairs(), Repairs { turned: 0, split: 1, unused: 1 });
+    assert_eq!(s.repairs(), SurfaceRepairs { turned: 0, split: 1, unused: 1 });
     assert_eq!(s.loops().len(), 1);
 }
 
@@ -139,7 +139,7 @@ proptest! {
         places in prop::collection::vec(prop::array::uniform3(-2.0..2.0f64), 0..9),
         triangles in prop::collection::vec(prop::array::uniform3(0u32..10), 0..12),
     ) {
-        if let Ok(s) = Surface::new(points(&places), triangles) {
+        if let Ok(s) = PieceSurface::new(points(&places), triangles) {
             let free = s.opposite().iter().filter(|&&o| o == FREE).count();
             prop_assert_eq!(free, s.loops().iter().map(Vec::len).sum::<usize>());
             for (h, &o) in s.opposite().iter().enumerate().filter(|(_, o)| **o != FREE) {

@@ -1,7 +1,7 @@
 //! A part of the tree, and a tree of which only a part looks for others: for cloth that moves among
 //! cloth that holds still.
 
-use super::{Active, ClothTree, Search};
+use super::{Active, ClothTree, PairSearch};
 use crate::Vec3;
 use crate::pair::Pair;
 use crate::volume::BoundingVolume;
@@ -51,7 +51,7 @@ impl<V: BoundingVolume> ClothTree<V> {
     #[must_use]
     pub fn about(&self, x: &[Vec3], reach: f64) -> Vec<bool> {
         let still = vec![Vec3::zeros(); x.len()];
-        let search = Search { x, moves: &still, ways: &[], reach };
+        let search = PairSearch { x, moves: &still, ways: &[], reach };
         let near = |s: usize, t: usize, out: &mut Vec<u32>| {
             let (a, b) = (&self.triangles[s], &self.triangles[t]);
             if !search.is_far(a, b) {

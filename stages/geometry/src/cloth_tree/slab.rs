@@ -4,12 +4,12 @@
 //! meets those of many layers. Along the normal of either triangle they are flat (two of the axes
 //! of the separating axis theorem).
 
-use super::Search;
+use super::PairSearch;
 
 use crate::Vec3;
-impl Search<'_> {
+impl PairSearch<'_> {
     /// Whether the triangles are farther apart than any pair of their features looks:
-    /// [`Search::keep`] would drop all of them.
+    /// [`PairSearch::keep`] would drop all of them.
     pub(super) fn is_far(&self, a: &[u32; 3], b: &[u32; 3]) -> bool {
         let [p, q] = [a, b].map(|t| t.map(|v| self.x[v as usize]));
         let reach = self.reach + self.approach(a, b);

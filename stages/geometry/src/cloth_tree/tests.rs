@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::shapes::{sheet, soup};
-use crate::volume::{KDop, Obb, Sphere};
+use crate::volume::{BoundingSphere, KDop, Obb};
 use proptest::prelude::*;
 
 #[test]
@@ -25,7 +25,7 @@ proptest! {
         let (x, triangles) = soup(seed, count, size);
         let moves = vec![Vec3::zeros(); x.len()];
         let boxes = ClothTree::new(&triangles, &x).pairs(&x, &moves, reach);
-        prop_assert_eq!(&ClothTree::<Sphere>::of(&triangles, &x).pairs(&x, &moves, reach), &boxes);
+        prop_assert_eq!(&ClothTree::<BoundingSphere>::of(&triangles, &x).pairs(&x, &moves, reach), &boxes);
         prop_assert_eq!(&ClothTree::<Obb>::of(&triangles, &x).pairs(&x, &moves, reach), &boxes);
         prop_assert_eq!(&ClothTree::<KDop<13>>::of(&triangles, &x).pairs(&x, &moves, reach), &boxes);
     }

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::cloth_tree::ClothTree;
-use crate::shapes::{Shape, cube, numbers, sheet, soup, sphere};
-use crate::volume::{KDop, Obb, Sphere};
+use crate::shapes::{ShapeMesh, cube, numbers, sheet, soup, sphere};
+use crate::volume::{BoundingSphere, KDop, Obb};
 
 fn found<V: BoundingVolume>(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     ClothTree::<V>::of(triangles, positions).exact_crossings(positions)
@@ -47,7 +47,7 @@ fn agrees_with_brute_force_for_all_volumes() {
     }
     assert!(brute.len() > 200, "{} crossings are too few to tell", brute.len());
     assert_eq!(found::<Aabb>(&positions, &triangles), brute);
-    assert_eq!(found::<Sphere>(&positions, &triangles), brute);
+    assert_eq!(found::<BoundingSphere>(&positions, &triangles), brute);
     assert_eq!(found::<Obb>(&positions, &triangles), brute);
     assert_eq!(found::<KDop<9>>(&positions, &triangles), brute);
 }
@@ -162,12 +162,12 @@ fn volume_is_zero(t: &[Vec3; 3]) -> bool {
     (t[1] - t[0]).cross(&(t[2] - t[0])).norm() == 0.0
 }
 
-fn crossings(positions: &[Vec3], triangles: &[[u32; 3]], body: &Shape) -> Vec<[u32; 2]> {
+fn crossings(positions: &[Vec3], triangles: &[[u32; 3]], body: &ShapeMesh) -> Vec<[u32; 2]> {
     between_meshes((positions, triangles), (&body.0, &body.1))
 }
 
 /// The pairs of a cloth and a body, tested one by one.
-fn brute(cloth: &Shape, body: &Shape) -> Vec<[u32; 2]> {
+fn brute(cloth: &ShapeMesh, body: &ShapeMesh) -> Vec<[u32; 2]> {
     let corners = |p: &[Vec3], t: &[u32; 3]| t.map(|i| p[i as usize]);
     let mut pairs = Vec::new();
     for (i, s) in cloth.1.iter().enumerate() {

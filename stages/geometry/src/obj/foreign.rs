@@ -1,7 +1,7 @@
 //! What a file is that holds no OBJ mesh: another format, by its first bytes, or an OBJ without
 //! faces.
 
-use super::text::{Lines, decode, words};
+use super::text::{NumberedLines, decode, words};
 
 /// Formats by how their files begin.
 const BEGINNINGS: [(&[u8], &str); 33] = [
@@ -88,7 +88,7 @@ fn zip(bytes: &[u8]) -> &'static str {
 }
 
 fn is_dxf(text: &[u8]) -> bool {
-    let mut lines = Lines::new(text).map(|(_, line)| line);
+    let mut lines = NumberedLines::new(text).map(|(_, line)| line);
     lines.next().is_some_and(|l| l.trim_ascii() == b"0")
         && lines.next().is_some_and(|l| l.trim_ascii() == b"SECTION")
 }
@@ -97,7 +97,7 @@ fn is_dxf(text: &[u8]) -> bool {
 #[must_use]
 pub fn without_faces(bytes: &[u8]) -> Option<String> {
     let (mut points, mut lines, mut curved) = (0_usize, 0_usize, false);
-    for (_, line) in Lines::new(&decode(bytes)) {
+    for (_, line) in NumberedLines::new(&decode(bytes)) {
         match words(&line).next() {
             Some(b"v") => points += 1,
             Some(b"l") => lines += 1,

@@ -4,20 +4,20 @@
 //! indices of the faces; each triangle takes those of its face. Cost: linear in the text.
 
 use super::parse::{MAX_COORDINATE, MAX_TRIANGLES, clip, corner, parse_faces};
-use super::text::{Lines, decode, words};
+use super::text::{NumberedLines, decode, words};
 use super::{Mesh, ObjError};
 use std::collections::BTreeMap;
 
 /// What stands beside the mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Marks {
+pub struct FaceMarks {
     /// Texture points, in the order of the file.
     pub uv: Vec<[f64; 2]>,
-    /// For each corner of each triangle its texture point, [`Marks::NONE`] where it has none.
+    /// For each corner of each triangle its texture point, [`FaceMarks::NONE`] where it has none.
     pub corners: Vec<[u32; 3]>,
-    /// For each triangle its group, by [`Marks::group_names`].
+    /// For each triangle its group, by [`FaceMarks::group_names`].
     pub groups: Vec<u32>,
-    /// For each triangle its material, by [`Marks::material_names`].
+    /// For each triangle its material, by [`FaceMarks::material_names`].
     pub materials: Vec<u32>,
     /// Names of groups and objects (`g`, `o`); the first is empty, for faces above any.
     pub group_names: Vec<String>,
@@ -27,7 +27,7 @@ pub struct Marks {
     pub lines: Vec<[u32; 2]>,
 }
 
-impl Marks {
+impl FaceMarks {
     /// A corner without a texture point.
     pub const NONE: u32 = u32::MAX;
 }
@@ -39,11 +39,11 @@ const LONGEST_NAME: usize = 60;
 ///
 /// # Errors
 /// [`ObjError`] with the line.
-pub fn parse_marked(bytes: &[u8]) -> Result<(Mesh, Marks), ObjError> {
+pub fn parse_marked(bytes: &[u8]) -> Result<(Mesh, FaceMarks), ObjError> {
     let text = decode(bytes);
     let (mesh, face_of) = parse_faces(&text)?;
-    let mut reader = Reader::new();
-    for (line, content) in Lines::new(&text) {
+    let mut reader = MarkedReader::new();
+    for (line, content) in NumberedLines::new(&text) {
         reader.line(&content, line)?;
     }
     reader.check(mesh.vertices.len())?;
@@ -54,7 +54,7 @@ pub fn parse_marked(bytes: &[u8]) -> Result<(Mesh, Marks), ObjError> {
 /// A corner of a face: its vertex and its texture point.
 type FaceCorner = (u32, u32);
 
-struct Face {
+struct MarkedFace {
     line: usize,
     corners: std::ops::Range<usize>,
     group: u32,
@@ -62,26 +62,26 @@ struct Face {
 }
 
 /// What is known at a line.
-struct Reader {
+struct MarkedReader {
     vertices: usize,
     corners: Vec<FaceCorner>,
-    faces: Vec<Face>,
+    faces: Vec<MarkedFace>,
     /// Lines with the number of theirs in the file.
     lines: Vec<(usize, [u32; 2])>,
-    groups: Names,
-    materials: Names,
+    groups: NameList,
+    materials: NameList,
     uv: Vec<[f64; 2]>,
 }
 
-impl Reader {
+impl MarkedReader {
     fn new() -> Self {
         Self {
             vertices: 0,
             corners: Vec::new(),
             faces: Vec::new(),
             lines: Vec::new(),
-            groups: Names::new(),
-            materials: Names::new(),
+            groups: NameList::new(),
+            materials: NameList::new(),
             uv: Vec::new(),
         }
     }
@@ -111,7 +111,7 @@ impl Reader {
             self.corners.push((vertex, texture(word, self.uv.len(), line)?));
         }
         let (group, material) = (self.groups.current, self.materials.current);
-        self.faces.push(Face { line, corners: first..self.corners.len(), group, material });
+        self.faces.push(MarkedFace { line, corners: first..self.corners.len(), group, material });
         Ok(())
     }
 
@@ -129,7 +129,7 @@ impl Reader {
     fn check(&self, vertices: usize) -> Result<(), ObjError> {
         let count = self.uv.len();
         for face in &self.faces {
-            let wrong = |c: &&FaceCorner| c.1 != Marks::NONE && c.1 as usize >= count;
+            let wrong = |c: &&FaceCorner| c.1 != FaceMarks::NONE && c.1 as usize >= count;
             if let Some(c) = self.corners[face.corners.clone()].iter().find(wrong) {
                 return Err(ObjError::NoTexture { line: face.line, index: i64::from(c.1) + 1, count });
             }
@@ -141,14 +141,14 @@ impl Reader {
         self.lines.iter().find_map(beyond).map_or(Ok(()), Err)
     }
 
-    fn marks(self, mesh: &Mesh, face_of: &[u32]) -> Marks {
+    fn marks(self, mesh: &Mesh, face_of: &[u32]) -> FaceMarks {
         let face = |t: usize| &self.faces[face_of[t] as usize];
         let texture_of = |t: usize| {
             let corners = &self.corners[face(t).corners.clone()];
-            mesh.triangles[t].map(|v| corners.iter().find(|c| c.0 == v).map_or(Marks::NONE, |c| c.1))
+            mesh.triangles[t].map(|v| corners.iter().find(|c| c.0 == v).map_or(FaceMarks::NONE, |c| c.1))
         };
         let count = mesh.triangles.len();
-        Marks {
+        FaceMarks {
             corners: (0..count).map(texture_of).collect(),
             groups: (0..count).map(|t| face(t).group).collect(),
             materials: (0..count).map(|t| face(t).material).collect(),
@@ -161,13 +161,13 @@ impl Reader {
 }
 
 /// Names in the order in which they come up.
-struct Names {
+struct NameList {
     list: Vec<String>,
     known: BTreeMap<String, u32>,
     current: u32,
 }
 
-impl Names {
+impl NameList {
     fn new() -> Self {
         Self { list: vec![String::new()], known: BTreeMap::from([(String::new(), 0)]), current: 0 }
     }
@@ -196,7 +196,7 @@ fn texture_point<'a>(mut words: impl Iterator<Item = &'a [u8]>, line: usize) -> 
 /// The texture point of `7/1` or `7/1/3`, counted from 0; none of `7` and `7//3`.
 fn texture(word: &[u8], count: usize, line: usize) -> Result<u32, ObjError> {
     match word.split(|b| *b == b'/').nth(1) {
-        None | Some(b"") => Ok(Marks::NONE),
+        None | Some(b"") => Ok(FaceMarks::NONE),
         Some(second) => {
             let named = corner(second, count, line).map_err(|e| match e {
                 ObjError::NoVertex { line, index, count } => ObjError::NoTexture { line, index, count },
@@ -220,7 +220,7 @@ mod tests {
     fn every_triangle_knows_its_texture_points_group_and_material() {
         let (mesh, marks) = parse_marked(SHEETS.as_bytes()).unwrap();
         assert_eq!(mesh, super::super::parse(SHEETS.as_bytes()).unwrap());
-        let none = Marks::NONE;
+        let none = FaceMarks::NONE;
         assert_eq!(marks.corners, [[0, 1, 2], [0, 2, 3], [0, 1, 2], [none; 3]]);
         assert_eq!((marks.groups, marks.materials), (vec![1, 1, 2, 2], vec![1, 1, 2, 2]));
         assert_eq!(marks.group_names, ["", "top", "side panel"]);
@@ -257,7 +257,7 @@ mod tests {
             if let Ok((mesh, marks)) = parse_marked(noise.as_bytes()) {
                 let n = mesh.triangles.len();
                 prop_assert_eq!([marks.corners.len(), marks.groups.len(), marks.materials.len()], [n; 3]);
-                let corners = marks.corners.iter().flatten().filter(|c| **c != Marks::NONE);
+                let corners = marks.corners.iter().flatten().filter(|c| **c != FaceMarks::NONE);
                 prop_assert!(corners.into_iter().all(|c| (*c as usize) < marks.uv.len()));
             }
         }

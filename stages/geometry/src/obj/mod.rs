@@ -20,7 +20,7 @@ mod write;
 mod tests;
 
 pub use foreign::{other_format, without_faces};
-pub use marked::{Marks, parse_marked};
+pub use marked::{FaceMarks, parse_marked};
 pub use parse::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES, count_triangles, parse};
 pub use pieces::is_flat;
 pub use repair::{JOIN, Repairs, repair};

@@ -1,7 +1,7 @@
 //! The `v` and `f` lines of an OBJ text.
 
 use super::polygon::cut;
-use super::text::{Lines, decode, words};
+use super::text::{NumberedLines, decode, words};
 use super::{Mesh, ObjError};
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -26,7 +26,7 @@ struct Face {
 /// and normal indices).
 ///
 /// Indices may be negative, faces may stand before their vertices and have any number of corners;
-/// [`decode`] and [`Lines`] tell which encodings and line endings are read.
+/// [`decode`] and [`NumberedLines`] tell which encodings and line endings are read.
 ///
 /// # Errors
 /// [`ObjError`] with the line.
@@ -38,7 +38,7 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ObjError> {
 pub(super) fn parse_faces(text: &[u8]) -> Result<(Mesh, Vec<u32>), ObjError> {
     let mut mesh = Mesh::default();
     let (mut corners, mut faces): (Vec<i64>, Vec<Face>) = (Vec::new(), Vec::new());
-    for (line, content) in Lines::new(text) {
+    for (line, content) in NumberedLines::new(text) {
         let mut words = words(&content);
         match words.next() {
             Some(b"v") => mesh.vertices.push(vertex(words, line)?),
@@ -111,7 +111,7 @@ pub fn count_triangles(bytes: &[u8]) -> usize {
         let mut words = words(&line);
         if words.next() == Some(b"f") { words.count().saturating_sub(2) } else { 0 }
     };
-    Lines::new(&decode(bytes)).map(of).sum()
+    NumberedLines::new(&decode(bytes)).map(of).sum()
 }
 
 fn vertex<'a>(mut words: impl Iterator<Item = &'a [u8]>, line: usize) -> Result<Vector3<f64>, ObjError> {

@@ -15,7 +15,7 @@ pub fn is_flat([a, b, c]: [Vector3<f64>; 3]) -> bool {
 }
 
 /// The pieces of a mesh, in the order of their first vertices.
-pub(super) struct Pieces {
+pub(super) struct MeshPieces {
     /// The piece of each vertex.
     pub(super) of: Vec<u32>,
     /// Whether each edge of a piece has two triangles that run through it opposite ways, and it has
@@ -25,7 +25,7 @@ pub(super) struct Pieces {
     pub(super) triangles: Vec<usize>,
 }
 
-impl Pieces {
+impl MeshPieces {
     pub(super) fn new(mesh: &Mesh) -> Self {
         let sides = mesh.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]);
         let (of, count) = groups(mesh.vertices.len(), sides);

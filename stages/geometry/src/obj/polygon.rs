@@ -4,9 +4,8 @@
 //! it would be turned over, ears are cut instead (Meisters, 1975), seen along the face's normal
 //! (Newell). Cost: the corners; their square where ears are cut.
 
-use nalgebra::{Vector2, Vector3};
-
-type Vec3 = Vector3<f64>;
+use crate::Vec3;
+use nalgebra::Vector2;
 
 /// Corners up to which ears are cut.
 const MAX_EARS: usize = 256;

@@ -7,11 +7,9 @@
 //! its neighbour. Cost: O(n), and a sort of the edges.
 
 use super::Mesh;
-use super::pieces::{Pieces, directed, is_flat};
-use nalgebra::Vector3;
+use super::pieces::{MeshPieces, directed, is_flat};
+use crate::Vec3;
 use std::collections::{BTreeMap, HashMap};
-
-type Vec3 = Vector3<f64>;
 
 /// Distance within which vertices are one, as a share of the mesh's diagonal: the sixth digit of an
 /// exporter.
@@ -80,7 +78,7 @@ pub fn repair(mut mesh: Mesh) -> (Mesh, Repairs) {
     let mut repairs = Repairs { unused: unused(&mesh), ..Repairs::default() };
     drop_collapsed(&mut mesh, &mut repairs);
     drop_doubled(&mut mesh, &mut repairs);
-    let pieces = Pieces::new(&mesh);
+    let pieces = MeshPieces::new(&mesh);
     let mut is_sound = pieces.closed.clone();
     for t in &mesh.triangles {
         is_sound[pieces.at(t)] &= !is_flat(t.map(|v| mesh.vertices[v as usize]));

@@ -1,6 +1,6 @@
 //! What of a mended mesh can be touched from outside.
 
-use super::pieces::Pieces;
+use super::pieces::MeshPieces;
 use super::repair::without_unused;
 use super::{Mesh, Repairs};
 use crate::signed_distance::SignedDistance;
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 const THIN: f64 = 1e-12;
 
 /// A piece of the mesh.
-struct Piece {
+struct MeshPiece {
     triangles: usize,
     closed: bool,
     volume: f64,
@@ -23,7 +23,7 @@ struct Piece {
 /// nothing is changed: what is missing there cannot be guessed.
 #[must_use]
 pub fn outer_surface(mut mesh: Mesh, repairs: &mut Repairs) -> Mesh {
-    let pieces = Pieces::new(&mesh);
+    let pieces = MeshPieces::new(&mesh);
     let all = list(&mesh, &pieces);
     let Some(main) = (0..all.len()).reduce(|a, b| if all[b].triangles > all[a].triangles { b } else { a })
     else {
@@ -33,8 +33,8 @@ pub fn outer_surface(mut mesh: Mesh, repairs: &mut Repairs) -> Mesh {
     if !all[main].closed || all[main].volume.abs() <= least {
         return mesh;
     }
-    let is_open = |p: &Piece| p.triangles > 0 && (!p.closed || p.volume.abs() <= least);
-    let is_inward = |p: &Piece| p.triangles > 0 && !is_open(p) && p.volume < 0.0;
+    let is_open = |p: &MeshPiece| p.triangles > 0 && (!p.closed || p.volume.abs() <= least);
+    let is_inward = |p: &MeshPiece| p.triangles > 0 && !is_open(p) && p.volume < 0.0;
     if !all.iter().any(|p| is_open(p) || is_inward(p)) {
         return mesh;
     }
@@ -51,9 +51,9 @@ pub fn outer_surface(mut mesh: Mesh, repairs: &mut Repairs) -> Mesh {
     without_unused(mesh)
 }
 
-fn list(mesh: &Mesh, pieces: &Pieces) -> Vec<Piece> {
-    let mut all: Vec<Piece> = (0..pieces.closed.len())
-        .map(|k| Piece {
+fn list(mesh: &Mesh, pieces: &MeshPieces) -> Vec<MeshPiece> {
+    let mut all: Vec<MeshPiece> = (0..pieces.closed.len())
+        .map(|k| MeshPiece {
             triangles: pieces.triangles[k],
             closed: pieces.closed[k],
             volume: 0.0,
@@ -73,7 +73,12 @@ fn list(mesh: &Mesh, pieces: &Pieces) -> Vec<Piece> {
 }
 
 /// Whether a point lies in the main piece.
-fn within(mesh: &Mesh, pieces: &Pieces, main: usize, inward: bool) -> impl Fn(&Vector3<f64>) -> bool + use<> {
+fn within(
+    mesh: &Mesh,
+    pieces: &MeshPieces,
+    main: usize,
+    inward: bool,
+) -> impl Fn(&Vector3<f64>) -> bool + use<> {
     let outwards = |t: &[u32; 3]| if inward { [t[0], t[2], t[1]] } else { *t };
     let own: Vec<[u32; 3]> = mesh.triangles.iter().filter(|t| pieces.at(t) == main).map(outwards).collect();
     let body: SignedDistance = SignedDistance::new(mesh.vertices.clone(), own);

@@ -29,7 +29,7 @@ fn volume(mesh: &Mesh) -> f64 {
 }
 
 fn is_closed(mesh: &Mesh) -> bool {
-    pieces::Pieces::new(mesh).closed.iter().all(|c| *c)
+    pieces::MeshPieces::new(mesh).closed.iter().all(|c| *c)
 }
 
 #[test]

@@ -28,12 +28,12 @@ pub fn decode(bytes: &[u8]) -> Cow<'_, [u8]> {
 ///
 /// Other lines are not continued: a comment or a name may end in `\` (`# C:\bodies\`) and must not
 /// swallow the vertex below it.
-pub(super) struct Lines<'a> {
+pub(super) struct NumberedLines<'a> {
     rest: &'a [u8],
     number: usize,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> NumberedLines<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
         Self { rest: text, number: 0 }
     }
@@ -51,7 +51,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-impl<'a> Iterator for Lines<'a> {
+impl<'a> Iterator for NumberedLines<'a> {
     type Item = (usize, Cow<'a, [u8]>);
 
     fn next(&mut self) -> Option<Self::Item> {

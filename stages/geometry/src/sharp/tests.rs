@@ -1,9 +1,9 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::shapes::{self, Shape};
+use crate::shapes::{self, ShapeMesh};
 use crate::signed_distance::SignedDistance;
 
-fn block(low: [f64; 3], high: [f64; 3]) -> Shape {
+fn block(low: [f64; 3], high: [f64; 3]) -> ShapeMesh {
     shapes::block(low, high)
 }
 

@@ -1,13 +1,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::*;
-use crate::shapes::{Shape, both, cube, numbers, sphere};
-use crate::volume::{KDop, Obb, Sphere};
+use crate::shapes::{ShapeMesh, both, cube, numbers, sphere};
+use crate::volume::{BoundingSphere, KDop, Obb};
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
-fn index<V: BoundingVolume>(shape: &Shape) -> SignedDistance<V> {
+fn index<V: BoundingVolume>(shape: &ShapeMesh) -> SignedDistance<V> {
     SignedDistance::new(shape.0.clone(), shape.1.clone())
 }
 
@@ -60,7 +60,7 @@ fn agrees_with_parry_on_a_bumpy_body() {
 #[test]
 fn huge_and_tiny_bodies_keep_their_digits() {
     for scale in [1e-6, 1e6] {
-        let index = index::<Sphere>(&sphere(scale, 64, 64));
+        let index = index::<BoundingSphere>(&sphere(scale, 64, 64));
         let d = index.distance(&Vec3::new(0.0, 1.5 * scale, 0.0));
         assert!((d / scale - 0.5).abs() < 1e-9, "{d}");
     }

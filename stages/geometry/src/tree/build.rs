@@ -1,13 +1,13 @@
 //! How the tree divides its things.
 
-use super::{MAX_DEPTH, Part, Tree};
+use super::{MAX_DEPTH, TreePart, VolumeTree};
 use crate::volume::{Aabb, BoundingVolume};
 use crate::{Corners, Vec3};
 
 /// Bins of the surface-area heuristic: more make slightly better trees, slower.
 const BINS: usize = 12;
 
-impl Tree {
+impl VolumeTree {
     /// The tree over triangles, at most `leaf` of them together, and their numbers in its order. A
     /// corner that is no finite number must not be among them.
     #[must_use]
@@ -25,7 +25,7 @@ impl Tree {
 
 /// Appends the subtree over `order`, which starts at `first` of the whole list.
 fn grow(
-    parts: &mut Vec<Part>,
+    parts: &mut Vec<TreePart>,
     order: &mut [u32],
     first: usize,
     leaf: usize,
@@ -33,12 +33,12 @@ fn grow(
     depth: usize,
 ) {
     if order.len() <= leaf {
-        parts.push(Part { first: first as u32, count: order.len() as u32, right: 0 });
+        parts.push(TreePart { first: first as u32, count: order.len() as u32, right: 0 });
         return;
     }
     let middle = split(order, boxes, depth);
     let part = parts.len();
-    parts.push(Part { first: 0, count: 0, right: 0 });
+    parts.push(TreePart { first: 0, count: 0, right: 0 });
     let (left, right) = order.split_at_mut(middle);
     grow(parts, left, first, leaf, boxes, depth + 1);
     parts[part].right = parts.len() as u32;

@@ -4,7 +4,7 @@
 //! Manocha 1996 for two trees). Parts run side by side; what they find is put together in their
 //! order, whatever the number of threads.
 
-use super::Tree;
+use super::VolumeTree;
 use crate::volume::BoundingVolume;
 use std::ops::Range;
 
@@ -26,24 +26,24 @@ pub struct Meeting<'m, V, T> {
     pub visit: &'m (dyn Fn(usize, usize, &mut Vec<T>) + Sync),
 }
 
-impl Tree {
+impl VolumeTree {
     /// What `visit` adds for every two things that are near each other; the order depends on the
     /// tree alone.
     pub fn meetings<V: BoundingVolume, T: Send>(&self, meeting: &Meeting<'_, V, T>) -> Vec<T> {
         let mut found = Vec::new();
         if !self.is_empty() {
-            Walk { tree: self, meeting }.itself(0, TASK_LEVELS, &mut found);
+            TreeWalk { tree: self, meeting }.itself(0, TASK_LEVELS, &mut found);
         }
         found
     }
 }
 
-struct Walk<'w, V, T> {
-    tree: &'w Tree,
+struct TreeWalk<'w, V, T> {
+    tree: &'w VolumeTree,
     meeting: &'w Meeting<'w, V, T>,
 }
 
-impl<V: BoundingVolume, T: Send> Walk<'_, V, T> {
+impl<V: BoundingVolume, T: Send> TreeWalk<'_, V, T> {
     /// Whether neither of two parts looks for others.
     fn sleep(&self, a: u32, b: u32) -> bool {
         self.meeting.active.is_some_and(|(parts, _)| !parts[a as usize] && !parts[b as usize])

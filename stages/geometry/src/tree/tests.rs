@@ -2,17 +2,17 @@
 
 use super::meet::Meeting;
 use super::*;
-use crate::shapes::{Shape, soup};
-use crate::volume::{Aabb, KDop, Obb, Sphere};
+use crate::shapes::{ShapeMesh, soup};
+use crate::volume::{Aabb, BoundingSphere, KDop, Obb};
 use std::collections::BTreeSet;
 
-fn corners((positions, triangles): &Shape) -> Vec<Corners> {
+fn corners((positions, triangles): &ShapeMesh) -> Vec<Corners> {
     triangles.iter().map(|t| t.map(|i| positions[i as usize])).collect()
 }
 
 /// Pairs whose volumes are nearer than `reach`, the lower number first.
 fn pairs<V: BoundingVolume>(corners: &[Corners], reach: f64) -> Vec<(u32, u32)> {
-    let (tree, order) = Tree::over(corners, 2);
+    let (tree, order) = VolumeTree::over(corners, 2);
     let things: Vec<V> = order.iter().map(|&i| V::fit(&corners[i as usize])).collect();
     let visit =
         |a: usize, b: usize, out: &mut Vec<_>| out.push((order[a].min(order[b]), order[a].max(order[b])));
@@ -37,7 +37,7 @@ fn check_pairs<V: BoundingVolume>(corners: &[Corners], reach: f64) {
 fn finds_every_near_pair_once() {
     let corners = corners(&soup(1, 300, 0.1));
     check_pairs::<Aabb>(&corners, 0.05);
-    check_pairs::<Sphere>(&corners, 0.05);
+    check_pairs::<BoundingSphere>(&corners, 0.05);
     check_pairs::<Obb>(&corners, 0.05);
     check_pairs::<KDop<13>>(&corners, 0.05);
 }
@@ -45,7 +45,7 @@ fn finds_every_near_pair_once() {
 #[test]
 fn finds_the_nearest_first_of_equals() {
     let corners = corners(&soup(2, 500, 0.05));
-    let tree = Bvh::<Sphere>::new(&corners, 4);
+    let tree = Bvh::<BoundingSphere>::new(&corners, 4);
     let distance = |i: u32, p: &Vec3| (corners[i as usize][0] - p).norm_squared();
     for k in 0..50 {
         let p = Vec3::new(f64::from(k) / 50.0, 0.3, 0.7);
@@ -91,7 +91,7 @@ fn stays_shallow_where_sizes_fall_by_powers() {
 #[test]
 fn a_fit_follows_moved_triangles() {
     let (before, after) = (corners(&soup(5, 200, 0.1)), corners(&soup(6, 200, 0.1)));
-    let (tree, order) = Tree::over(&before, 2);
+    let (tree, order) = VolumeTree::over(&before, 2);
     let things: Vec<KDop<7>> = order.iter().map(|&i| KDop::fit(&after[i as usize])).collect();
     let mut seen = Vec::new();
     let probe = KDop::<7>::fit(&[Vec3::new(0.5, 0.5, 0.5)]);

@@ -18,7 +18,7 @@ mod sphere;
 pub use aabb::Aabb;
 pub use kdop::KDop;
 pub use obb::Obb;
-pub use sphere::Sphere;
+pub use sphere::BoundingSphere;
 
 use crate::Vec3;
 

@@ -5,16 +5,16 @@ use crate::Vec3;
 
 /// A ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sphere {
+pub struct BoundingSphere {
     /// Its middle.
     pub center: Vec3,
     /// Its radius.
     pub radius: f64,
 }
 
-impl Sphere {
+impl BoundingSphere {
     fn padded(center: Vec3, radius: f64) -> Self {
-        Sphere { center, radius: radius + PAD * (radius + center.amax()) }
+        BoundingSphere { center, radius: radius + PAD * (radius + center.amax()) }
     }
 
     /// The ball grown just enough to hold a point.
@@ -24,7 +24,7 @@ impl Sphere {
             return *self;
         }
         let radius = (self.radius + d) / 2.0;
-        Sphere { center: self.center + (p - self.center) * ((radius - self.radius) / d), radius }
+        BoundingSphere { center: self.center + (p - self.center) * ((radius - self.radius) / d), radius }
     }
 }
 
@@ -37,16 +37,16 @@ fn farthest<'a>(points: &'a [Vec3], from: &Vec3) -> &'a Vec3 {
     points.iter().fold(&points[0], better)
 }
 
-impl BoundingVolume for Sphere {
+impl BoundingVolume for BoundingSphere {
     // Ritter 1990: the ball between two far points, grown to the rest; within some 10 % of the
     // best.
     fn fit(points: &[Vec3]) -> Self {
         let a = farthest(points, &points[0]);
         let b = farthest(points, a);
-        let start = Sphere { center: ((a + b) / 2.0), radius: (b - a).norm() / 2.0 };
+        let start = BoundingSphere { center: ((a + b) / 2.0), radius: (b - a).norm() / 2.0 };
         let ball = points.iter().fold(start, |s, p| s.with(p));
         let radius = points.iter().map(|p| (p - ball.center).norm()).fold(0.0, f64::max);
-        Sphere::padded(ball.center, radius)
+        BoundingSphere::padded(ball.center, radius)
     }
 
     fn merge(&self, other: &Self) -> Self {
@@ -59,7 +59,7 @@ impl BoundingVolume for Sphere {
             return *other;
         }
         let radius = (d + self.radius + other.radius) / 2.0;
-        Sphere::padded(self.center + between * ((radius - self.radius) / d), radius)
+        BoundingSphere::padded(self.center + between * ((radius - self.radius) / d), radius)
     }
 
     fn near(&self, other: &Self, reach: f64) -> bool {

@@ -32,7 +32,7 @@ fn check<V: BoundingVolume>(a: &[Vec3], b: &[Vec3], c: &[Vec3]) {
 
 fn check_all(a: &[Vec3], b: &[Vec3], c: &[Vec3]) {
     check::<Aabb>(a, b, c);
-    check::<Sphere>(a, b, c);
+    check::<BoundingSphere>(a, b, c);
     check::<Obb>(a, b, c);
     check::<KDop<3>>(a, b, c);
     check::<KDop<7>>(a, b, c);
@@ -77,7 +77,7 @@ fn see_the_gap_between_slanted_strips_according_to_how_tight_they_are() {
         !V::fit(a).near(&V::fit(b), 0.0)
     }
     let (a, b) = (strip(along, Vec3::zeros()), strip(along, apart));
-    assert!(!sees::<Sphere>(&a, &b) && !sees::<Aabb>(&a, &b) && !sees::<KDop<3>>(&a, &b));
+    assert!(!sees::<BoundingSphere>(&a, &b) && !sees::<Aabb>(&a, &b) && !sees::<KDop<3>>(&a, &b));
     assert!(
         sees::<KDop<7>>(&a, &b) && sees::<KDop<9>>(&a, &b) && sees::<KDop<13>>(&a, &b) && sees::<Obb>(&a, &b)
     );
@@ -102,7 +102,7 @@ fn a_volume_is_not_needlessly_large() {
     let unit: Vec<Vec3> =
         (0..8).map(|i| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect();
     assert_eq!(Aabb::fit(&unit).size(), 3.0);
-    assert!(Sphere::fit(&unit).radius < 1.1 * 0.75_f64.sqrt());
+    assert!(BoundingSphere::fit(&unit).radius < 1.1 * 0.75_f64.sqrt());
     assert!(Obb::fit(&unit).size() < 1.5 + 1e-9);
     assert!((KDop::<13>::fit(&unit).size() - 3.0).abs() < 1e-9);
 }

@@ -17,12 +17,12 @@
 //! ground's colour; a hard cast shadow is mostly taken for garment, as it borders on it and the
 //! models are fitted again. `GraphCut`, which also looks at edges, goes on from here.
 
-use super::finish::{Finish, mask_of, no_garment};
+use super::finish::{CleanUp, mask_of, no_garment};
 use super::mixture::Mixture;
 use super::morphology::{close, open};
 use super::refine::refine;
 use super::regions::Regions;
-use super::small::{Lab, Small};
+use super::small::{Lab, SmallPhoto};
 use image::GrayImage;
 use toile_core::prelude::*;
 
@@ -63,9 +63,9 @@ pub struct Background {
 impl Background {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
         let settings =
-            Finish { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`GraphCut()`" };
+            CleanUp { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`GraphCut()`" };
         mask_of(photo, settings, cx, || {
-            let small = Small::of(photo, self.size);
+            let small = SmallPhoto::of(photo, self.size);
             cx.check()?;
             let mask = background(&small, self.modes as usize, self.rim, self.shadow).ok_or_else(|| {
                 no_garment(photo, "it has the colours of the frame's rim all over", settings.next)
@@ -87,7 +87,7 @@ pub(super) const CLEAN: f64 = 3.0;
 
 /// The garment in a small picture; `None` where all of it has the rim's colours. `rim` as a share
 /// of the shorter side, `shadow` as the share of the ground's lightness that a shadow may take.
-pub(super) fn background(small: &Small, modes: usize, rim: f64, shadow: f64) -> Option<Vec<bool>> {
+pub(super) fn background(small: &SmallPhoto, modes: usize, rim: f64, shadow: f64) -> Option<Vec<bool>> {
     let rim: Vec<bool> = (0..small.lab.len()).map(|i| small.depth(i) < rim_width(small, rim)).collect();
     let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
     let ground = Mixture::fit(&small.colours(&rim), modes, LEAST_MODE)?;
@@ -116,7 +116,7 @@ fn beside(ground: &Mixture, middle: Vec<Lab>, shadow: f64) -> Vec<Lab> {
 
 /// One round: colour models of both sides of a mask, and the sides by what is likelier around a
 /// pixel.
-fn settle(small: &Small, mask: &[bool], modes: usize) -> Option<Vec<bool>> {
+fn settle(small: &SmallPhoto, mask: &[bool], modes: usize) -> Option<Vec<bool>> {
     let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
     let ground = Mixture::fit(&small.colours(&outside), modes, 0.0)?;
     let garment = Mixture::fit(&small.colours(mask), modes, 0.0)?;
@@ -168,25 +168,25 @@ fn around(values: &[f64], w: usize, h: usize, radius: usize) -> Vec<f64> {
 }
 
 /// ln of how much likelier garment is than ground at a pixel, by its place alone.
-pub(super) fn place(small: &Small, i: usize) -> f64 {
+pub(super) fn place(small: &SmallPhoto, i: usize) -> f64 {
     let depth = small.depth(i) as f64 / small.w.min(small.h) as f64;
     ((depth - 0.1) * 10.0).clamp(-1.0, 1.0)
 }
 
 /// Whether a pixel lies in the ellipse about the frame's centre that is taken for garment.
-pub(super) fn in_middle(small: &Small, i: usize) -> bool {
+pub(super) fn in_middle(small: &SmallPhoto, i: usize) -> bool {
     let (x, y) = ((i % small.w) as f64 / small.w as f64 - 0.5, (i / small.w) as f64 / small.h as f64 - 0.5);
     x.hypot(y) < MIDDLE
 }
 
 /// Width of the rim at the reduced size, pixels.
-pub(super) fn rim_width(small: &Small, rim: f64) -> usize {
+pub(super) fn rim_width(small: &SmallPhoto, rim: f64) -> usize {
     ((small.w.min(small.h) as f64 * rim).round() as usize).max(1)
 }
 
 /// Closing, opening, the largest piece, of those that a user has marked if there are any, all its
 /// holes.
-pub(super) fn clean(small: &Small, raw: &[bool]) -> Option<Vec<bool>> {
+pub(super) fn clean(small: &SmallPhoto, raw: &[bool]) -> Option<Vec<bool>> {
     let radius = (CLEAN * small.w.max(small.h) as f64 / 400.0).round() as u32;
     let bytes = raw.iter().map(|on| if *on { 255 } else { 0 }).collect();
     let mask = GrayImage::from_raw(small.w as u32, small.h as u32, bytes)?;

@@ -1,7 +1,7 @@
 //! A thing that lies in a photo apart from others, and what is told of one beside the garment.
 
-use super::marks::Place;
-use super::small::Small;
+use super::marks::PhotoPlace;
+use super::small::SmallPhoto;
 use image::GrayImage;
 use toile_core::prelude::*;
 
@@ -29,7 +29,7 @@ pub(super) struct Thing {
 }
 
 impl Thing {
-    pub(super) fn of(mask: Vec<bool>, small: &Small) -> Self {
+    pub(super) fn of(mask: Vec<bool>, small: &SmallPhoto) -> Self {
         let (w, h) = (small.w as f64, small.h as f64);
         let on = || mask.iter().enumerate().filter(|(_, on)| **on).map(|(i, _)| (i % small.w, i / small.w));
         let span = |of: &dyn Fn((usize, usize)) -> usize| {
@@ -59,7 +59,7 @@ impl Thing {
     }
 
     /// Whether a place lies on it.
-    pub(super) fn holds(&self, (x, y): Place) -> bool {
+    pub(super) fn holds(&self, (x, y): PhotoPlace) -> bool {
         let [w, h] = self.size;
         let (x, y) = ((x * w as f64) as usize, (y * h as f64) as usize);
         self.mask.get(y.min(h - 1) * w + x.min(w - 1)).copied().unwrap_or(false)
@@ -111,7 +111,7 @@ pub(super) fn tell_beside(
     if photo.mirrored {
         return;
     }
-    let small = Small::of(photo, SIDE);
+    let small = SmallPhoto::of(photo, SIDE);
     let taken = Thing::of(at_size(&mask.pixels, &small), &small);
     let covered = |t: &Thing| {
         let both = t.mask.iter().zip(&taken.mask).filter(|(a, b)| **a && **b).count();
@@ -138,7 +138,7 @@ pub(super) fn tell_beside(
 }
 
 /// A mask of the photo's size at a reduced one.
-pub(super) fn at_size(mask: &GrayImage, small: &Small) -> Vec<bool> {
+pub(super) fn at_size(mask: &GrayImage, small: &SmallPhoto) -> Vec<bool> {
     let (w, h) = (mask.width() as usize, mask.height() as usize);
     let at = |i: usize| mask.as_raw()[(i / small.w * h / small.h) * w + i % small.w * w / small.w] != 0;
     (0..small.lab.len()).map(at).collect()

@@ -19,7 +19,7 @@ const TERMINAL: u8 = 254;
 const ORPHAN: u8 = 253;
 
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct CutNode {
     /// Residual capacities to the neighbours.
     to: [i32; 8],
     /// Residual from the source (positive) or to the sink (negative).
@@ -36,20 +36,27 @@ struct Node {
 
 /// A grid of pixels between a source (garment) and a sink (ground).
 #[derive(Debug)]
-pub(super) struct Grid {
+pub(super) struct CutGrid {
     w: usize,
-    nodes: Vec<Node>,
+    nodes: Vec<CutNode>,
     active: VecDeque<u32>,
     orphans: VecDeque<u32>,
     time: u32,
 }
 
-impl Grid {
+impl CutGrid {
     /// A grid without any capacity.
     pub(super) fn new(w: usize, h: usize) -> Self {
-        let node =
-            Node { to: [0; 8], terminal: 0, parent: FREE, sink: false, active: false, stamp: 0, distance: 0 };
-        Grid { w, nodes: vec![node; w * h], active: VecDeque::new(), orphans: VecDeque::new(), time: 0 }
+        let node = CutNode {
+            to: [0; 8],
+            terminal: 0,
+            parent: FREE,
+            sink: false,
+            active: false,
+            stamp: 0,
+            distance: 0,
+        };
+        CutGrid { w, nodes: vec![node; w * h], active: VecDeque::new(), orphans: VecDeque::new(), time: 0 }
     }
 
     /// Sets what it costs to cut pixel `i` off the source (to be ground) less what it costs to cut

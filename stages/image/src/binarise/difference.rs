@@ -12,9 +12,9 @@
 //! move between the photos; what has the very colours of the ground behind it is not seen.
 
 use super::background::{SHADOW, clean};
-use super::finish::{Finish, mask_of, no_garment};
+use super::finish::{CleanUp, mask_of, no_garment};
 use super::refine::refine;
-use super::small::{Lab, Small};
+use super::small::{Lab, SmallPhoto};
 use crate::photo::decode;
 use image::RgbImage;
 use toile_core::prelude::*;
@@ -61,10 +61,10 @@ pub struct Difference {
 #[stage]
 impl Difference {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`Auto()`" };
+        let settings = CleanUp { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`Auto()`" };
         mask_of(photo, settings, cx, || {
             let ground = self.ground(photo, cx)?;
-            let (small, ground) = (Small::of(photo, self.size), Small::of(&ground, self.size));
+            let (small, ground) = (SmallPhoto::of(photo, self.size), SmallPhoto::of(&ground, self.size));
             cx.check()?;
             let raw = different(&small, &ground, self.shadow);
             let mask = clean(&small, &raw).ok_or_else(|| {
@@ -102,7 +102,7 @@ impl Difference {
 }
 
 /// Which small pixels differ from the ground's.
-fn different(small: &Small, ground: &Small, shadow: f64) -> Vec<bool> {
+fn different(small: &SmallPhoto, ground: &SmallPhoto, shadow: f64) -> Vec<bool> {
     let behind = |i: usize| {
         let (x, y) = (i % small.w * ground.w / small.w, i / small.w * ground.h / small.h);
         ground.lab[y * ground.w + x]

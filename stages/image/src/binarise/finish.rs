@@ -5,7 +5,7 @@ use super::beside::tell_beside;
 use super::cut_out::{CutOut, cut_out};
 use super::marked::marked;
 use super::morphology::{MAX_RADIUS, close, open};
-use super::regions::{Piece, Regions};
+use super::regions::{MaskPiece, Regions};
 use super::tone::OPAQUE;
 use image::GrayImage;
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ use toile_core::prelude::*;
 
 /// Settings of the clean-up.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Finish {
+pub struct CleanUp {
     /// Radius of the opening, pixels; 0 for none.
     pub open: u32,
     /// Radius of the closing, pixels; 0 for none.
@@ -46,7 +46,7 @@ const PART: f64 = 0.02;
 /// frame.
 pub fn mask_of(
     photo: &Photo,
-    settings: Finish,
+    settings: CleanUp,
     cx: &Context,
     method: impl FnOnce() -> Result<GrayImage, StageError>,
 ) -> Result<Mask, StageError> {
@@ -60,7 +60,7 @@ pub fn mask_of(
             photo.file
         ));
     }
-    finish(mask, photo, Finish { touch: f64::INFINITY, ..settings }, cx)
+    finish(mask, photo, CleanUp { touch: f64::INFINITY, ..settings }, cx)
 }
 
 /// Cleans a raw mask and checks that it shows one whole garment.
@@ -70,7 +70,7 @@ pub fn mask_of(
 ///
 /// # Errors
 /// [`ErrorCode::InvalidInput`] for no garment, and a garment cut by the frame.
-pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) -> Result<Mask, StageError> {
+pub fn finish(mask: GrayImage, photo: &Photo, settings: CleanUp, cx: &Context) -> Result<Mask, StageError> {
     let (mask, second) = finished(mask, photo, settings, cx)?;
     if second.is_some() {
         tell_beside(photo, &mask, second.as_ref(), Vec::new, cx);
@@ -82,7 +82,7 @@ pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) ->
 fn finished(
     mask: GrayImage,
     photo: &Photo,
-    settings: Finish,
+    settings: CleanUp,
     cx: &Context,
 ) -> Result<(Mask, Option<GrayImage>), StageError> {
     cx.check()?;
@@ -125,7 +125,7 @@ fn without_transparent(mut mask: GrayImage, photo: &Photo) -> GrayImage {
 pub fn fill_holes(mask: GrayImage, share: f64) -> GrayImage {
     let regions = Regions::of(&mask);
     let area: u64 = regions.pieces.iter().filter(|p| p.on).map(|p| p.area).sum();
-    let is_hole = |p: &Piece| !p.on && p.frame == 0 && p.area as f64 <= share * area as f64;
+    let is_hole = |p: &MaskPiece| !p.on && p.frame == 0 && p.area as f64 <= share * area as f64;
     match regions.pieces.iter().any(is_hole) {
         true => regions.paint(|_, p| p.on || is_hole(p)),
         false => mask,
@@ -133,7 +133,12 @@ pub fn fill_holes(mask: GrayImage, share: f64) -> GrayImage {
 }
 
 /// The one garment among the pieces.
-fn one_garment(regions: &Regions, photo: &Photo, settings: Finish, stage: &str) -> Result<usize, StageError> {
+fn one_garment(
+    regions: &Regions,
+    photo: &Photo,
+    settings: CleanUp,
+    stage: &str,
+) -> Result<usize, StageError> {
     let order = regions.by_size();
     let least = LEAST_AREA * frame_area(photo);
     let Some(&largest) = order.first().filter(|&&i| regions.pieces[i].area as f64 >= least) else {

@@ -3,7 +3,7 @@
 //! Cost: two looks at every pixel, about 10 ms for 12 megapixels on two cores. Limits: the
 //! threshold holds for one light and one ground; `Otsu` finds it by itself.
 
-use super::finish::{Finish, mask_of};
+use super::finish::{CleanUp, mask_of};
 use super::tone::{Polarity, by_polarity, luma, mark};
 use image::GrayImage;
 use toile_core::prelude::*;
@@ -42,7 +42,7 @@ pub struct Global {
 #[stage]
 impl Global {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish {
+        let settings = CleanUp {
             open: self.open,
             close: self.close,
             holes: self.holes,

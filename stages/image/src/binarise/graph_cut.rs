@@ -17,13 +17,13 @@
 //! Limits: a hard cast shadow is taken for garment where its edge is sharper than the garment's.
 
 use super::background::{SHADOW, background, clean, in_middle, place, rim_width};
-use super::cut::{Grid, STEPS};
-use super::finish::{Finish, mask_of, no_garment};
-use super::marks::{self, Marks, Place, of_photo};
+use super::cut::{CutGrid, STEPS};
+use super::finish::{CleanUp, mask_of, no_garment};
+use super::marks::{self, PhotoMarks, PhotoPlace, of_photo};
 use super::mixture::Mixture;
 use super::morphology::{dilate, erode};
 use super::refine::refine;
-use super::small::Small;
+use super::small::SmallPhoto;
 use image::GrayImage;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
@@ -65,13 +65,13 @@ pub struct GraphCut {
     pub touch: f64,
     /// Places on the garment, by photo, as shares of width and height from the left upper corner.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub garment: BTreeMap<String, Vec<Place>>,
+    pub garment: BTreeMap<String, Vec<PhotoPlace>>,
     /// Places on the ground, likewise.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub ground: BTreeMap<String, Vec<Place>>,
+    pub ground: BTreeMap<String, Vec<PhotoPlace>>,
     /// Two opposite corners of a rectangle that holds all of the garment, by photo, likewise.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub rect: BTreeMap<String, (Place, Place)>,
+    pub rect: BTreeMap<String, (PhotoPlace, PhotoPlace)>,
     /// Files, by photo: copies of the photo with green strokes on the garment and red strokes on
     /// the ground.
     #[param(default = BTreeMap::new())]
@@ -82,11 +82,11 @@ pub struct GraphCut {
 impl GraphCut {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
         let settings =
-            Finish { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`Background()`" };
+            CleanUp { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`Background()`" };
         mask_of(photo, settings, cx, || {
             let marks = self.marks(photo, cx)?;
             let mask = self.coarse(photo, &marks, cx)?;
-            let mut small = Small::of(photo, self.size);
+            let mut small = SmallPhoto::of(photo, self.size);
             marks.mark(&mut small);
             let mask = self.fine(&small, &mask, cx)?;
             refine(photo, &small, &mask, cx)
@@ -94,8 +94,8 @@ impl GraphCut {
     }
 
     /// Rounds of fitting and cutting at half the size, until nothing changes.
-    fn coarse(&self, photo: &Photo, marks: &Marks<'_>, cx: &Context) -> Result<Coarse, StageError> {
-        let mut small = Small::of(photo, self.size / 2);
+    fn coarse(&self, photo: &Photo, marks: &PhotoMarks<'_>, cx: &Context) -> Result<Coarse, StageError> {
+        let mut small = SmallPhoto::of(photo, self.size / 2);
         marks.mark(&mut small);
         cx.check()?;
         let start = start(&small, self.modes as usize, self.rim);
@@ -106,7 +106,7 @@ impl GraphCut {
     /// nothing changes; `None` where one side of the cut is empty.
     pub(super) fn settle(
         &self,
-        small: Small,
+        small: SmallPhoto,
         (mut inside, mut outside): (Vec<bool>, Vec<bool>),
         cx: &Context,
     ) -> Result<Option<Coarse>, StageError> {
@@ -133,9 +133,9 @@ impl GraphCut {
         Ok(Some(Coarse { small, mask, models }))
     }
 
-    fn marks(&self, photo: &Photo, cx: &Context) -> Result<Marks<'_>, StageError> {
+    fn marks(&self, photo: &Photo, cx: &Context) -> Result<PhotoMarks<'_>, StageError> {
         let strokes = of_photo(&self.strokes, photo, cx).map(|file| marks::strokes(file, photo, cx));
-        Ok(Marks {
+        Ok(PhotoMarks {
             garment: of_photo(&self.garment, photo, cx).map_or(&[], |all| all),
             ground: of_photo(&self.ground, photo, cx).map_or(&[], |all| all),
             rect: of_photo(&self.rect, photo, cx).copied(),
@@ -155,7 +155,12 @@ impl GraphCut {
     }
 
     /// The last cut, at the full size, in a band along the boundary that the coarse rounds found.
-    pub(super) fn fine(&self, small: &Small, coarse: &Coarse, cx: &Context) -> Result<Vec<bool>, StageError> {
+    pub(super) fn fine(
+        &self,
+        small: &SmallPhoto,
+        coarse: &Coarse,
+        cx: &Context,
+    ) -> Result<Vec<bool>, StageError> {
         let mask = coarse.at_size(small);
         let links = Links::of(small, self.gamma);
         cut(small, &coarse.models, &links, rim_width(small, self.rim), Some(&mask), cx)
@@ -169,7 +174,7 @@ impl GraphCut {
     /// The same at another size of the photo.
     pub(super) fn raw_at(
         &self,
-        small: &Small,
+        small: &SmallPhoto,
         coarse: &Coarse,
         cx: &Context,
     ) -> Result<Vec<bool>, StageError> {
@@ -179,15 +184,15 @@ impl GraphCut {
 
     /// The state before the last cut of a mask that another method found; `None` where one side is
     /// empty.
-    pub(super) fn of_mask(&self, small: Small, mask: Vec<bool>) -> Option<Coarse> {
+    pub(super) fn of_mask(&self, small: SmallPhoto, mask: Vec<bool>) -> Option<Coarse> {
         let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
         let models = self.models(&small, &mask, &outside)?;
         Some(Coarse { small, mask, models })
     }
 
-    fn models(&self, small: &Small, inside: &[bool], outside: &[bool]) -> Option<Models> {
+    fn models(&self, small: &SmallPhoto, inside: &[bool], outside: &[bool]) -> Option<ColourModels> {
         let fit = |of| Mixture::fit(&small.colours(of), self.modes as usize, 0.0);
-        Some(Models { garment: fit(inside)?, ground: fit(outside)? })
+        Some(ColourModels { garment: fit(inside)?, ground: fit(outside)? })
     }
 }
 
@@ -197,7 +202,7 @@ fn one_colour(photo: &Photo) -> StageError {
 
 /// Colour models of both sides.
 #[derive(Debug)]
-pub(super) struct Models {
+pub(super) struct ColourModels {
     pub(super) garment: Mixture,
     pub(super) ground: Mixture,
 }
@@ -205,14 +210,14 @@ pub(super) struct Models {
 /// What the coarse rounds found.
 #[derive(Debug)]
 pub(super) struct Coarse {
-    pub(super) small: Small,
+    pub(super) small: SmallPhoto,
     pub(super) mask: Vec<bool>,
-    pub(super) models: Models,
+    pub(super) models: ColourModels,
 }
 
 impl Coarse {
     /// The mask at another size of the same photo.
-    pub(super) fn at_size(&self, to: &Small) -> Vec<bool> {
+    pub(super) fn at_size(&self, to: &SmallPhoto) -> Vec<bool> {
         let (w, h) = (self.small.w, self.small.h);
         let at = |i: usize| (i / to.w * h / to.h) * w + i % to.w * w / to.w;
         (0..to.w * to.h).map(|i| self.mask[at(i)]).collect()
@@ -227,15 +232,15 @@ const FIXED: i32 = 100_000_000;
 
 /// The cut under two models; where a mask is given, only near its boundary.
 fn cut(
-    small: &Small,
-    models: &Models,
+    small: &SmallPhoto,
+    models: &ColourModels,
     links: &Links,
     rim: usize,
     near: Option<&[bool]>,
     cx: &Context,
 ) -> Result<Vec<bool>, StageError> {
     let band = near.and_then(|mask| band(small, mask));
-    let mut grid = Grid::new(small.w, small.h);
+    let mut grid = CutGrid::new(small.w, small.h);
     for (i, colour) in small.lab.iter().enumerate() {
         let capacity = match &band {
             _ if small.known[i] == Some(true) => FIXED,
@@ -255,7 +260,7 @@ fn cut(
 }
 
 /// The mask without and with a band along its boundary.
-fn band(small: &Small, mask: &[bool]) -> Option<(Vec<u8>, Vec<u8>)> {
+fn band(small: &SmallPhoto, mask: &[bool]) -> Option<(Vec<u8>, Vec<u8>)> {
     let bytes = mask.iter().map(|on| if *on { 255 } else { 0 }).collect();
     let mask = GrayImage::from_raw(small.w as u32, small.h as u32, bytes)?;
     Some((erode(&mask, BAND).into_raw(), dilate(&mask, BAND).into_raw()))
@@ -273,7 +278,7 @@ fn units(cost: f64) -> i32 {
 const COVERED: f64 = 0.8;
 
 /// What is taken for garment and for ground at first.
-pub(super) fn start(small: &Small, modes: usize, rim: f64) -> (Vec<bool>, Vec<bool>) {
+pub(super) fn start(small: &SmallPhoto, modes: usize, rim: f64) -> (Vec<bool>, Vec<bool>) {
     let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
     let covers = |mask: &Vec<bool>| {
         let both = mask.iter().zip(&middle).filter(|(a, b)| **a && **b).count();
@@ -295,7 +300,7 @@ struct Links(Vec<[i32; 4]>);
 const KEPT: std::ops::Range<usize> = 4..8;
 
 impl Links {
-    fn of(small: &Small, gamma: f64) -> Links {
+    fn of(small: &SmallPhoto, gamma: f64) -> Links {
         // A boundary grows with the side, the area within with its square.
         let gamma = gamma * small.w.max(small.h) as f64 / 400.0;
         let difference = |i: usize, d: usize| {
@@ -313,7 +318,7 @@ impl Links {
         Links((0..small.lab.len()).map(|i| std::array::from_fn(|k| cost(i, KEPT.start + k))).collect())
     }
 
-    fn put(&self, grid: &mut Grid) {
+    fn put(&self, grid: &mut CutGrid) {
         for (i, costs) in self.0.iter().enumerate() {
             for (d, &cost) in KEPT.zip(costs).filter(|(_, c)| **c > 0) {
                 grid.set_link(i, d, cost);

@@ -9,7 +9,7 @@
 //! Limits: made for uneven light. The window must be wider than what it parts: inside a garment
 //! that is wider than the window only its edge is found, and the inside is closed as a hole.
 
-use super::finish::{Finish, mask_of};
+use super::finish::{CleanUp, mask_of};
 use super::tone::{Polarity, histogram, luma, rim_share};
 use image::GrayImage;
 use rayon::prelude::*;
@@ -71,7 +71,7 @@ const MAX_RADIUS_PX: u32 = 2000;
 #[stage]
 impl Local {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish {
+        let settings = CleanUp {
             open: self.open,
             close: self.close,
             holes: self.holes,

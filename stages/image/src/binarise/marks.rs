@@ -1,13 +1,13 @@
 //! What a user has marked in a photo: places, a rectangle, strokes of a brush.
 
-use super::small::Small;
+use super::small::SmallPhoto;
 use crate::photo::decode;
 use image::RgbImage;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
 /// A place in a photo, as shares of its width and height, from its left upper corner.
-pub type Place = (f64, f64);
+pub type PhotoPlace = (f64, f64);
 
 /// A point marks a disc of this radius, as a share of the photo's longer side.
 const DISC: f64 = 0.012;
@@ -18,20 +18,20 @@ const SAME_FORM: f64 = 0.02;
 
 /// The marks of one photo.
 #[derive(Debug, Default)]
-pub(super) struct Marks<'a> {
+pub(super) struct PhotoMarks<'a> {
     /// Places on the garment.
-    pub garment: &'a [Place],
+    pub garment: &'a [PhotoPlace],
     /// Places on the ground.
-    pub ground: &'a [Place],
+    pub ground: &'a [PhotoPlace],
     /// Two opposite corners of a rectangle that holds all of the garment.
-    pub rect: Option<(Place, Place)>,
+    pub rect: Option<(PhotoPlace, PhotoPlace)>,
     /// Green strokes on the garment, red strokes on the ground.
     pub strokes: Option<RgbImage>,
 }
 
-impl Marks<'_> {
+impl PhotoMarks<'_> {
     /// Puts the marks into a small picture.
-    pub(super) fn mark(&self, small: &mut Small) {
+    pub(super) fn mark(&self, small: &mut SmallPhoto) {
         let (w, h) = (small.w, small.h);
         for i in 0..w * h {
             let at = ((i % w) as f64 + 0.5, (i / w) as f64 + 0.5);
@@ -41,7 +41,7 @@ impl Marks<'_> {
 
     /// Whether a pixel is marked as garment or as ground; what is marked as both is garment.
     fn known(&self, (x, y): (f64, f64), (w, h): (f64, f64)) -> Option<bool> {
-        let near = |p: &Place| (p.0 * w - x).hypot(p.1 * h - y) <= (DISC * w.max(h)).max(1.0);
+        let near = |p: &PhotoPlace| (p.0 * w - x).hypot(p.1 * h - y) <= (DISC * w.max(h)).max(1.0);
         if self.garment.iter().any(near) {
             return Some(true);
         }
@@ -52,11 +52,11 @@ impl Marks<'_> {
     }
 }
 
-fn holds((a, b): (Place, Place), (x, y): Place) -> bool {
+fn holds((a, b): (PhotoPlace, PhotoPlace), (x, y): PhotoPlace) -> bool {
     (a.0.min(b.0)..=a.0.max(b.0)).contains(&x) && (a.1.min(b.1)..=a.1.max(b.1)).contains(&y)
 }
 
-fn stroke(strokes: &RgbImage, (x, y): Place) -> Option<bool> {
+fn stroke(strokes: &RgbImage, (x, y): PhotoPlace) -> Option<bool> {
     let (w, h) = strokes.dimensions();
     let at = |share: f64, n: u32| ((share * f64::from(n)) as u32).min(n.saturating_sub(1));
     let [r, g, b] = strokes.get_pixel_checked(at(x, w), at(y, h))?.0.map(i32::from);

@@ -35,10 +35,10 @@ impl Mixture {
     pub(super) fn fit(colours: &[Lab], count: usize, least: f64) -> Option<Mixture> {
         let mut clusters = vec![colours.to_vec()];
         while clusters.len() < count {
-            let spreads = clusters.iter().map(|c| Spread::of(c).map_or(0.0, |s| s.largest));
+            let spreads = clusters.iter().map(|c| ColourSpread::of(c).map_or(0.0, |s| s.largest));
             let widest = spreads.enumerate().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
             let Some((i, _)) = widest.filter(|(_, s)| *s > LEAST_VARIANCE) else { break };
-            let (below, above) = Spread::of(&clusters[i])?.split(&clusters[i]);
+            let (below, above) = ColourSpread::of(&clusters[i])?.split(&clusters[i]);
             clusters[i] = below;
             clusters.push(above);
         }
@@ -73,7 +73,7 @@ impl Mixture {
 
 impl Mode {
     fn of(colours: &[Lab], total: f64) -> Option<Mode> {
-        let spread = Spread::of(colours)?;
+        let spread = ColourSpread::of(colours)?;
         let covariance = spread.covariance + Matrix3::identity() * LEAST_VARIANCE;
         let inverse = covariance.try_inverse()?;
         let offset = covariance.determinant().ln() / 2.0 - (colours.len() as f64 / total).ln();
@@ -97,15 +97,15 @@ impl Mode {
 }
 
 /// Mean and spread of some colours.
-struct Spread {
+struct ColourSpread {
     mean: Lab,
     covariance: Matrix3<f64>,
     largest: f64,
     axis: Lab,
 }
 
-impl Spread {
-    fn of(colours: &[Lab]) -> Option<Spread> {
+impl ColourSpread {
+    fn of(colours: &[Lab]) -> Option<ColourSpread> {
         let n = colours.len() as f64;
         if colours.is_empty() {
             return None;
@@ -115,7 +115,7 @@ impl Spread {
             colours.iter().map(|c| (c - mean) * (c - mean).transpose()).sum::<Matrix3<f64>>() / n;
         let eigen = covariance.symmetric_eigen();
         let i = eigen.eigenvalues.imax();
-        Some(Spread {
+        Some(ColourSpread {
             mean,
             covariance,
             largest: eigen.eigenvalues[i],

@@ -10,7 +10,7 @@
 //! threshold for the whole photo, on grey levels alone: fails on patterned grounds, strong shadows
 //! and garments of the ground's tone. `Background` and `GraphCut` look at colour.
 
-use super::finish::{Finish, mask_of, no_garment};
+use super::finish::{CleanUp, mask_of, no_garment};
 use super::global::global;
 use super::tone::{Polarity, histogram, luma};
 use image::GrayImage;
@@ -54,7 +54,7 @@ const LEAST_CONTRAST: f64 = 10.0;
 #[stage]
 impl Otsu {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish {
+        let settings = CleanUp {
             open: self.open,
             close: self.close,
             holes: self.holes,

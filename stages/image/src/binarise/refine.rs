@@ -9,7 +9,7 @@
 //! Cost: only the band along the boundary is looked at pixel by pixel; 12 megapixels take about 20
 //! ms.
 
-use super::small::{Lab, Small, lab};
+use super::small::{Lab, SmallPhoto, lab};
 use image::GrayImage;
 use rayon::prelude::*;
 use toile_core::prelude::*;
@@ -19,7 +19,7 @@ const REACH: usize = 4;
 
 /// Colours on both sides of the boundary near a small pixel.
 #[derive(Debug, Clone, Copy)]
-struct Sides {
+struct BoundaryColours {
     ground: Lab,
     /// (F - B) / |F - B|^2.
     toward: Lab,
@@ -30,12 +30,12 @@ struct Sides {
 /// The photo's mask from a small one.
 pub(super) fn refine(
     photo: &Photo,
-    small: &Small,
+    small: &SmallPhoto,
     mask: &[bool],
     cx: &Context,
 ) -> Result<GrayImage, StageError> {
     let soft = soften(mask, small.w, small.h);
-    let sides: Vec<Option<Sides>> = (0..mask.len())
+    let sides: Vec<Option<BoundaryColours>> = (0..mask.len())
         .into_par_iter()
         .map(|i| (soft[i] > 0.0 && soft[i] < 1.0).then(|| sides(small, mask, i)).flatten())
         .collect();
@@ -45,7 +45,7 @@ pub(super) fn refine(
         if y % 64 == 0 {
             cx.check()?;
         }
-        Row { photo, small, soft: &soft, sides: &sides, y }.fill(row);
+        MaskRow { photo, small, soft: &soft, sides: &sides, y }.fill(row);
         Ok::<(), StageError>(())
     })?;
     Ok(out)
@@ -63,7 +63,7 @@ fn soften(mask: &[bool], w: usize, h: usize) -> Vec<f64> {
     (0..w * h).map(soft).collect()
 }
 
-fn sides(small: &Small, mask: &[bool], i: usize) -> Option<Sides> {
+fn sides(small: &SmallPhoto, mask: &[bool], i: usize) -> Option<BoundaryColours> {
     let (x, y) = (i % small.w, i / small.w);
     let (w, h) = (small.w, small.h);
     let (mut sum, mut square, mut count) = ([Lab::zeros(); 2], [0.0; 2], [0.0; 2]);
@@ -92,22 +92,22 @@ fn sides(small: &Small, mask: &[bool], i: usize) -> Option<Sides> {
         return None;
     }
     let trust = contrast / (contrast + variance(0) + variance(1) + NOISE);
-    Some(Sides { ground: mean[0], toward: (mean[1] - mean[0]) / contrast, trust: trust * trust })
+    Some(BoundaryColours { ground: mean[0], toward: (mean[1] - mean[0]) / contrast, trust: trust * trust })
 }
 
 /// Variance of a pixel of the photo by itself, squared Lab units.
 const NOISE: f64 = 9.0;
 
 /// One row of the photo's mask.
-struct Row<'a> {
+struct MaskRow<'a> {
     photo: &'a Photo,
-    small: &'a Small,
+    small: &'a SmallPhoto,
     soft: &'a [f64],
-    sides: &'a [Option<Sides>],
+    sides: &'a [Option<BoundaryColours>],
     y: usize,
 }
 
-impl Row<'_> {
+impl MaskRow<'_> {
     /// Goes from one column of small pixels' centres to the next: between two that agree, above and
     /// below, all is one.
     fn fill(&self, row: &mut [u8]) {

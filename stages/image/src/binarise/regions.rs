@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// A stretch of equal pixels in a row.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct PixelRun {
     y: u32,
     start: u32,
     /// Behind its last pixel.
@@ -22,7 +22,7 @@ struct Run {
 
 /// A connected piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Piece {
+pub struct MaskPiece {
     /// Its pixels.
     pub area: u64,
     /// Its pixels on the outermost rows and columns of the frame.
@@ -35,16 +35,16 @@ pub struct Piece {
 #[derive(Debug)]
 pub struct Regions {
     size: (u32, u32),
-    runs: Vec<Run>,
+    runs: Vec<PixelRun>,
     /// All pieces, in reading order of their first pixel.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<MaskPiece>,
 }
 
 impl Regions {
     /// Finds the pieces of a mask.
     pub fn of(mask: &GrayImage) -> Self {
         let (w, h) = mask.dimensions();
-        let rows: Vec<Vec<Run>> = match w {
+        let rows: Vec<Vec<PixelRun>> = match w {
             0 => Vec::new(),
             _ => mask.par_chunks(w as usize).enumerate().map(|(y, row)| runs(y as u32, row)).collect(),
         };
@@ -56,14 +56,14 @@ impl Regions {
                 Some(start)
             })
             .collect();
-        let mut runs: Vec<Run> = rows.into_iter().flatten().collect();
+        let mut runs: Vec<PixelRun> = rows.into_iter().flatten().collect();
         let parents = join(&runs, &starts);
         let pieces = number(&mut runs, parents, (w, h));
         Regions { size: (w, h), runs, pieces }
     }
 
     /// A mask of the pieces for which `keep` holds.
-    pub fn paint(&self, keep: impl Fn(usize, &Piece) -> bool) -> GrayImage {
+    pub fn paint(&self, keep: impl Fn(usize, &MaskPiece) -> bool) -> GrayImage {
         let kept: Vec<bool> = self.pieces.iter().enumerate().map(|(i, p)| keep(i, p)).collect();
         let (w, h) = self.size;
         let mut mask = GrayImage::new(w, h);
@@ -93,14 +93,14 @@ impl Regions {
     }
 }
 
-fn runs(y: u32, row: &[u8]) -> Vec<Run> {
+fn runs(y: u32, row: &[u8]) -> Vec<PixelRun> {
     let mut found = Vec::new();
     let mut start = 0;
     while start < row.len() {
         let on = row[start] != 0;
         let length = row[start..].iter().position(|&v| (v != 0) != on);
         let end = length.map_or(row.len(), |n| start + n);
-        found.push(Run { y, start: start as u32, end: end as u32, on, piece: 0 });
+        found.push(PixelRun { y, start: start as u32, end: end as u32, on, piece: 0 });
         start = end;
     }
     found
@@ -116,7 +116,7 @@ fn root(parents: &mut [u32], mut i: u32) -> u32 {
 }
 
 /// Union-find over the runs: the root of a piece is its first run.
-fn join(runs: &[Run], starts: &[usize]) -> Vec<u32> {
+fn join(runs: &[PixelRun], starts: &[usize]) -> Vec<u32> {
     let mut parents: Vec<u32> = (0..runs.len() as u32).collect();
     for (k, &start) in starts.iter().enumerate().skip(1) {
         let end = starts.get(k + 1).copied().unwrap_or(runs.len());
@@ -140,19 +140,19 @@ fn join(runs: &[Run], starts: &[usize]) -> Vec<u32> {
     parents
 }
 
-fn touch(a: &Run, b: &Run) -> bool {
+fn touch(a: &PixelRun, b: &PixelRun) -> bool {
     let corner = u32::from(!a.on);
     a.on == b.on && a.start < b.end + corner && b.start < a.end + corner
 }
 
 /// Gives every run its piece's number and adds the pieces up.
-fn number(runs: &mut [Run], mut parents: Vec<u32>, (w, h): (u32, u32)) -> Vec<Piece> {
-    let mut pieces: Vec<Piece> = Vec::new();
+fn number(runs: &mut [PixelRun], mut parents: Vec<u32>, (w, h): (u32, u32)) -> Vec<MaskPiece> {
+    let mut pieces: Vec<MaskPiece> = Vec::new();
     for i in 0..runs.len() {
         let first = root(&mut parents, i as u32) as usize;
         let run = runs[i];
         let piece = if first == i {
-            pieces.push(Piece { area: 0, frame: 0, on: run.on });
+            pieces.push(MaskPiece { area: 0, frame: 0, on: run.on });
             pieces.len() as u32 - 1
         } else {
             runs[first].piece

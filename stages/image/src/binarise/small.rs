@@ -16,7 +16,7 @@ pub type Lab = Vector3<f64>;
 
 /// A photo at a reduced size.
 #[derive(Debug, Clone)]
-pub(super) struct Small {
+pub(super) struct SmallPhoto {
     /// Pixels across.
     pub w: usize,
     /// Pixels down.
@@ -31,9 +31,9 @@ pub(super) struct Small {
     pub scale: (f64, f64),
 }
 
-impl Small {
+impl SmallPhoto {
     /// The photo brought down to at most `side` pixels on its longer side.
-    pub(super) fn of(photo: &Photo, side: u32) -> Small {
+    pub(super) fn of(photo: &Photo, side: u32) -> SmallPhoto {
         let (pw, ph) = photo.pixels.dimensions();
         let factor = (f64::from(side) / f64::from(pw.max(ph))).min(1.0);
         let fit = |n: u32| ((f64::from(n) * factor).round() as usize).clamp(1, n.max(1) as usize);
@@ -43,7 +43,7 @@ impl Small {
             .flat_map_iter(|y| (0..w).map(move |x| block(photo, cut(x, w, pw), cut(y, h, ph))));
         let (lab, seen) = rows.unzip();
         let known = vec![None; w * h];
-        Small { w, h, lab, seen, known, scale: (f64::from(pw) / w as f64, f64::from(ph) / h as f64) }
+        SmallPhoto { w, h, lab, seen, known, scale: (f64::from(pw) / w as f64, f64::from(ph) / h as f64) }
     }
 
     /// The colours of the marked pixels that are not transparent.

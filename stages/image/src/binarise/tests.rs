@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use super::cut::{Grid, STEPS};
+use super::cut::{CutGrid, STEPS};
 use super::mixture::Mixture;
 use super::small::Lab;
 use super::*;
@@ -431,7 +431,7 @@ proptest! {
         links in prop::collection::vec(prop::array::uniform4(0i32..12), 12),
     ) {
         let terminals = &numbers[..w * h];
-        let mut grid = Grid::new(w, h);
+        let mut grid = CutGrid::new(w, h);
         for (i, &t) in terminals.iter().enumerate() {
             grid.set_terminal(i, t);
             for d in 4..8 {

@@ -10,16 +10,16 @@ pub(super) const CHANNELS: usize = 3;
 
 /// An image as rows of bytes, with rows and columns past the frame clamped to it.
 #[derive(Clone, Copy)]
-pub(super) struct Rows<'a> {
+pub(super) struct ClampedRows<'a> {
     data: &'a [u8],
     stride: usize,
     height: usize,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> ClampedRows<'a> {
     pub(super) fn new(image: &'a RgbImage) -> Self {
         let (w, h) = image.dimensions();
-        Rows { data: image.as_raw(), stride: w as usize * CHANNELS, height: h as usize }
+        ClampedRows { data: image.as_raw(), stride: w as usize * CHANNELS, height: h as usize }
     }
 
     /// Bytes of a row.

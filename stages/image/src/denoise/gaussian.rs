@@ -6,7 +6,7 @@
 //! Cost: 2 (6 sigma + 1) multiplications a sample; 12 megapixels take about 60 ms at sigma 1
 //! on two cores. Limits: blurs edges; a corner of the outline moves inwards by about sigma / 2.
 
-use super::bands::{CHANNELS, Rows, by_bands, pad};
+use super::bands::{CHANNELS, ClampedRows, by_bands, pad};
 use image::RgbImage;
 use toile_core::prelude::*;
 
@@ -46,7 +46,7 @@ fn half_kernel(sigma: f64) -> Vec<f32> {
 /// Blurs by a Gaussian of standard deviation `sigma` pixels (0.3 to 20); the frame's pixels are
 /// repeated outwards.
 pub fn gaussian(image: &RgbImage, sigma: f64, cx: &Context) -> Result<RgbImage, StageError> {
-    let rows = Rows::new(image);
+    let rows = ClampedRows::new(image);
     let kernel = half_kernel(sigma);
     let reach = kernel.len() - 1;
     by_bands(image, 16, cx, |band, out| {
@@ -63,7 +63,7 @@ pub fn gaussian(image: &RgbImage, sigma: f64, cx: &Context) -> Result<RgbImage, 
     })
 }
 
-fn blur_down(rows: Rows, y: usize, kernel: &[f32], column: &mut [f32]) {
+fn blur_down(rows: ClampedRows, y: usize, kernel: &[f32], column: &mut [f32]) {
     column.iter_mut().zip(rows.at(y, 0)).for_each(|(c, &v)| *c = kernel[0] * f32::from(v));
     for (k, &weight) in (1isize..).zip(&kernel[1..]) {
         let (above, below) = (rows.at(y, -k), rows.at(y, k));

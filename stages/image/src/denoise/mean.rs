@@ -11,7 +11,7 @@
 //!
 //! Limits: blurs edges by its radius; the edge detector finds them again at their middle.
 
-use super::bands::{CHANNELS, Rows, by_bands, pad};
+use super::bands::{CHANNELS, ClampedRows, by_bands, pad};
 use super::join::{joined, joint};
 use super::joined_pixels;
 use image::RgbImage;
@@ -89,7 +89,7 @@ pub fn neighbourhood_mean(
     radius: usize,
     cx: &Context,
 ) -> Result<RgbImage, StageError> {
-    let rows = Rows::new(image);
+    let rows = ClampedRows::new(image);
     by_bands(image, band_rows(radius), cx, |band, out| match mask {
         Neighbours::Eight => square(rows, radius, band, out),
         Neighbours::Four => diamond(rows, radius, band, out),
@@ -116,7 +116,7 @@ impl Divider {
     }
 }
 
-fn square(rows: Rows, radius: usize, band: Range<usize>, out: &mut [u8]) {
+fn square(rows: ClampedRows, radius: usize, band: Range<usize>, out: &mut [u8]) {
     let r = radius as isize;
     let stride = rows.stride();
     // Sums down the columns: at most 101 * 255, which fits.
@@ -178,7 +178,7 @@ fn mean_along(padded: &[u16], radius: usize, row: &mut [u8]) {
 }
 
 /// Sums of runs by running totals along each row, added up over the diamond's rows.
-fn diamond(rows: Rows, radius: usize, band: Range<usize>, out: &mut [u8]) {
+fn diamond(rows: ClampedRows, radius: usize, band: Range<usize>, out: &mut [u8]) {
     let stride = rows.stride();
     let r = radius as isize;
     let divider = Divider::new(2 * radius * (radius + 1) + 1);

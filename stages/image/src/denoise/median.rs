@@ -10,7 +10,7 @@
 //!
 //! Limits: rounds corners by about its radius; thin straps narrower than the radius vanish.
 
-use super::bands::{CHANNELS, Rows, by_bands, pad};
+use super::bands::{CHANNELS, ClampedRows, by_bands, pad};
 use image::RgbImage;
 use std::ops::Range;
 use toile_core::prelude::*;
@@ -40,18 +40,18 @@ impl Median {
 /// The median over the square of (2 radius + 1)^2 pixels (radius 1 to 50); the frame's pixels are
 /// repeated outwards.
 pub fn median(image: &RgbImage, radius: usize, cx: &Context) -> Result<RgbImage, StageError> {
-    let rows = Rows::new(image);
+    let rows = ClampedRows::new(image);
     match radius {
         1 => by_bands(image, 64, cx, |band, out| of_nine(rows, band, out)),
         _ => by_bands(image, (4 * radius).max(64), cx, |band, out| {
             (0..rows.width()).step_by(TILE).for_each(|x| {
-                (0..CHANNELS).for_each(|c| Tile::new(rows, radius, x, c).run(band.clone(), out))
+                (0..CHANNELS).for_each(|c| ColumnStripe::new(rows, radius, x, c).run(band.clone(), out))
             });
         }),
     }
 }
 
-fn of_nine(rows: Rows, band: Range<usize>, out: &mut [u8]) {
+fn of_nine(rows: ClampedRows, band: Range<usize>, out: &mut [u8]) {
     let stride = rows.stride();
     let mut padded = [0; 3].map(|_: u8| vec![0u8; stride + 2 * CHANNELS]);
     for (y, row) in band.zip(out.chunks_exact_mut(stride)) {
@@ -151,8 +151,8 @@ fn bin_of(bins: &[u16; 16], rank: u16) -> (usize, u16) {
 }
 
 /// A stripe of output columns of one channel.
-struct Tile<'a> {
-    rows: Rows<'a>,
+struct ColumnStripe<'a> {
+    rows: ClampedRows<'a>,
     radius: usize,
     /// First output column.
     x: usize,
@@ -163,10 +163,10 @@ struct Tile<'a> {
     columns: Vec<Histogram>,
 }
 
-impl<'a> Tile<'a> {
-    fn new(rows: Rows<'a>, radius: usize, x: usize, channel: usize) -> Self {
+impl<'a> ColumnStripe<'a> {
+    fn new(rows: ClampedRows<'a>, radius: usize, x: usize, channel: usize) -> Self {
         let width = TILE.min(rows.width() - x);
-        Tile { rows, radius, x, width, channel, columns: vec![Histogram::EMPTY; width + 2 * radius] }
+        ColumnStripe { rows, radius, x, width, channel, columns: vec![Histogram::EMPTY; width + 2 * radius] }
     }
 
     fn run(&mut self, band: Range<usize>, out: &mut [u8]) {

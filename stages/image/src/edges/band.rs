@@ -16,16 +16,16 @@ const NONE: u32 = u32::MAX;
 
 /// A square piece of a grey picture, row by row.
 #[derive(Debug, Clone)]
-pub(crate) struct Patch {
+pub(crate) struct PicturePatch {
     pub(crate) side: usize,
     pub(crate) data: Vec<f32>,
 }
 
-impl Patch {
+impl PicturePatch {
     /// Correlates with `across` along rows and `down` along columns (odd lengths); the result is
     /// smaller by the kernels' radii on each side, so nothing is made up at the rim. Both kernels
     /// have one length.
-    pub(crate) fn separable(&self, across: &[f32], down: &[f32]) -> Patch {
+    pub(crate) fn separable(&self, across: &[f32], down: &[f32]) -> PicturePatch {
         let (n, k) = (self.side, across.len());
         let side = n + 1 - k;
         let mut rows = vec![0.0; n * side];
@@ -41,33 +41,33 @@ impl Patch {
                 out.iter_mut().zip(row).for_each(|(o, v)| *o += c * v);
             }
         }
-        Patch { side, data }
+        PicturePatch { side, data }
     }
 
     /// Point by point.
-    pub(crate) fn zip(&self, other: &Patch, f: impl Fn(f32, f32) -> f32) -> Patch {
+    pub(crate) fn zip(&self, other: &PicturePatch, f: impl Fn(f32, f32) -> f32) -> PicturePatch {
         let data = self.data.iter().zip(&other.data).map(|(&a, &b)| f(a, b)).collect();
-        Patch { side: self.side, data }
+        PicturePatch { side: self.side, data }
     }
 
     /// The inner part, `rim` pixels from each side.
-    pub(crate) fn core(&self, rim: usize) -> Patch {
+    pub(crate) fn core(&self, rim: usize) -> PicturePatch {
         let side = self.side - 2 * rim;
         let row = |y: usize| &self.data[(y + rim) * self.side + rim..][..side];
-        Patch { side, data: (0..side).flat_map(row).copied().collect() }
+        PicturePatch { side, data: (0..side).flat_map(row).copied().collect() }
     }
 }
 
 /// Which tiles of a picture are computed.
 #[derive(Debug)]
-pub(crate) struct Band {
+pub(crate) struct TileBand {
     size: [usize; 2],
     columns: usize,
     index: Vec<u32>,
     tiles: Vec<[usize; 2]>,
 }
 
-impl Band {
+impl TileBand {
     /// The tiles within `reach` pixels of any of the points (pixels, y up).
     pub(crate) fn around(size: [usize; 2], points: &[Point2], reach: f64) -> Self {
         let [columns, rows] = size.map(|n| n.div_ceil(TILE).max(1));
@@ -80,7 +80,7 @@ impl Band {
                 }
             }
         }
-        let mut band = Band { size, columns, index: vec![NONE; wanted.len()], tiles: Vec::new() };
+        let mut band = TileBand { size, columns, index: vec![NONE; wanted.len()], tiles: Vec::new() };
         for (i, _) in wanted.iter().enumerate().filter(|(_, w)| **w) {
             band.index[i] = band.tiles.len() as u32;
             band.tiles.push([i % columns * TILE, i / columns * TILE]);
@@ -93,19 +93,19 @@ impl Band {
         &self,
         photo: &RgbImage,
         halo: usize,
-        f: impl Fn(Patch) -> R + Sync,
+        f: impl Fn(PicturePatch) -> R + Sync,
     ) -> Vec<R> {
         self.tiles.par_iter().map(|&origin| f(grey_patch(photo, origin, halo))).collect()
     }
 
     /// Patches of tile size as one picture.
-    pub(crate) fn plane(&self, tiles: Vec<Patch>) -> Plane<'_> {
-        Plane { band: self, tiles }
+    pub(crate) fn plane(&self, tiles: Vec<PicturePatch>) -> BandPicture<'_> {
+        BandPicture { band: self, tiles }
     }
 
     /// A picture that is zero everywhere.
-    pub(crate) fn blank(&self) -> Plane<'_> {
-        let tile = Patch { side: TILE, data: vec![0.0; TILE * TILE] };
+    pub(crate) fn blank(&self) -> BandPicture<'_> {
+        let tile = PicturePatch { side: TILE, data: vec![0.0; TILE * TILE] };
         self.plane(vec![tile; self.tiles.len()])
     }
 
@@ -124,7 +124,7 @@ impl Band {
 }
 
 /// Luminance (Rec. 601, sRGB levels) around a tile; the picture goes on beyond its frame.
-fn grey_patch(photo: &RgbImage, [x0, y0]: [usize; 2], halo: usize) -> Patch {
+fn grey_patch(photo: &RgbImage, [x0, y0]: [usize; 2], halo: usize) -> PicturePatch {
     let (w, h) = (photo.width() as i64, photo.height() as i64);
     let side = TILE + 2 * halo;
     let raw = photo.as_raw();
@@ -138,17 +138,17 @@ fn grey_patch(photo: &RgbImage, [x0, y0]: [usize; 2], halo: usize) -> Patch {
             data.push(0.299 * r + 0.587 * g + 0.114 * b);
         }
     }
-    Patch { side, data }
+    PicturePatch { side, data }
 }
 
 /// A picture known in a band.
 #[derive(Debug)]
-pub(crate) struct Plane<'a> {
-    band: &'a Band,
-    tiles: Vec<Patch>,
+pub(crate) struct BandPicture<'a> {
+    band: &'a TileBand,
+    tiles: Vec<PicturePatch>,
 }
 
-impl Plane<'_> {
+impl BandPicture<'_> {
     fn place(&self, x: usize, y: usize) -> Option<(usize, usize)> {
         let tile = self.band.index[(y / TILE) * self.band.columns + x / TILE];
         (tile != NONE).then_some((tile as usize, (y % TILE) * TILE + x % TILE))

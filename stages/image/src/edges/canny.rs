@@ -6,8 +6,8 @@
 //! to a fraction of a pixel. Cost: about 60 ns a pixel of the band. Limits: corners are rounded by
 //! the smoothing, and are put back as the intersection of their sides ([`super::corners`]).
 
-use super::band::{Band, Patch, Plane};
-use super::operator::{Accept, Operator, Response, gaussian, gradient};
+use super::band::{BandPicture, PicturePatch, TileBand};
+use super::operator::{Accept, Operator, OperatorResponse, gaussian, gradient};
 use super::outline::detect;
 use image::RgbImage;
 use toile_core::prelude::*;
@@ -65,10 +65,10 @@ impl Operator for Canny {
         self.smooth
     }
 
-    fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a> {
+    fn respond<'a>(&self, photo: &RgbImage, band: &'a TileBand) -> OperatorResponse<'a> {
         let kernel = gaussian(self.sigma);
         let halo = kernel.len() / 2 + 2;
-        let (ridges, thin): (Vec<Patch>, Vec<Patch>) = band
+        let (ridges, thin): (Vec<PicturePatch>, Vec<PicturePatch>) = band
             .map(photo, halo, |grey| {
                 let (gx, gy) = gradient(&grey.separable(&kernel, &kernel), [1.0, 2.0, 1.0]);
                 let magnitude = gx.zip(&gy, f32::hypot);
@@ -78,13 +78,13 @@ impl Operator for Canny {
             .into_iter()
             .unzip();
         let edges = hysteresis(band, &band.plane(thin), self.low as f32, self.high as f32);
-        Response::Ridge { signal: band.plane(ridges), accept: Accept::Marked(edges), centre: 0.0 }
+        OperatorResponse::Ridge { signal: band.plane(ridges), accept: Accept::Marked(edges), centre: 0.0 }
     }
 }
 
 /// Keeps a magnitude only where it is the greatest across the edge; neighbours are interpolated in
 /// the direction of the gradient. The result is smaller by one pixel on each side.
-fn non_maximum_suppression(magnitude: &Patch, gx: &Patch, gy: &Patch) -> Patch {
+fn non_maximum_suppression(magnitude: &PicturePatch, gx: &PicturePatch, gy: &PicturePatch) -> PicturePatch {
     let n = magnitude.side;
     let keep = |i: usize| {
         let m = magnitude.data[i];
@@ -104,11 +104,11 @@ fn non_maximum_suppression(magnitude: &Patch, gx: &Patch, gy: &Patch) -> Patch {
     };
     let side = n - 2;
     let data = (0..side * side).map(|k| keep((k / side + 1) * n + k % side + 1)).collect();
-    Patch { side, data }
+    PicturePatch { side, data }
 }
 
 /// Marks what is above `low` and hangs together (8 neighbours) with something above `high`.
-fn hysteresis<'a>(band: &'a Band, thin: &Plane<'a>, low: f32, high: f32) -> Plane<'a> {
+fn hysteresis<'a>(band: &'a TileBand, thin: &BandPicture<'a>, low: f32, high: f32) -> BandPicture<'a> {
     let mut marked = band.blank();
     let mut todo: Vec<[usize; 2]> = Vec::new();
     let [w, h] = band.size();

@@ -9,7 +9,7 @@
 //! arm length times curve length. Limits: two corners nearer than an arm are seen as one, and a
 //! corner rounder than about a third of an arm is none.
 
-use super::curve::{Closed, Corner};
+use super::curve::{Closed, CurveCorner};
 use toile_core::artifact::{Point2, Vector2};
 
 /// What counts as a corner; lengths in the curve's units.
@@ -25,20 +25,20 @@ pub(crate) struct CornerScale {
 
 /// A parabola over the arc length: `p + v s + a s^2`.
 #[derive(Debug, Clone, Copy)]
-struct Arm {
+struct CornerArm {
     p: Vector2,
     v: Vector2,
     a: Vector2,
 }
 
-impl Arm {
+impl CornerArm {
     fn at(&self, s: f64) -> Vector2 {
         self.p + self.v * s + self.a * (s * s)
     }
 }
 
 /// All corners in the order of the curve.
-pub(crate) fn find(curve: &Closed, scale: CornerScale) -> Vec<Corner> {
+pub(crate) fn find(curve: &Closed, scale: CornerScale) -> Vec<CurveCorner> {
     let n = curve.points.len();
     let turns: Vec<f64> = (0..n).map(|i| turn_at(curve, i as f64 * curve.step, scale)).collect();
     let reach = ((scale.arm / curve.step) as usize).min(n.saturating_sub(1) / 2);
@@ -50,7 +50,7 @@ pub(crate) fn find(curve: &Closed, scale: CornerScale) -> Vec<Corner> {
         };
         here >= scale.least_turn && !(1..=reach).any(beaten)
     });
-    let mut corners: Vec<Corner> =
+    let mut corners: Vec<CurveCorner> =
         peaks.filter_map(|i| locate(curve, i as f64 * curve.step, scale)).collect();
     corners.sort_by(|a, b| a.at.total_cmp(&b.at));
     corners
@@ -62,7 +62,7 @@ fn turn_at(curve: &Closed, s: f64, scale: CornerScale) -> f64 {
 }
 
 /// Least-squares parabola over the arm on one side (`side` is 1 ahead, -1 behind).
-fn fit(curve: &Closed, s: f64, side: f64, scale: CornerScale) -> Arm {
+fn fit(curve: &Closed, s: f64, side: f64, scale: CornerScale) -> CornerArm {
     let count = (((scale.arm - scale.gap) / curve.step).ceil() as usize).max(4);
     let place = |k: usize| scale.gap + (scale.arm - scale.gap) * k as f64 / (count - 1) as f64;
     // Moments are taken about the arm's length, so that the system is well conditioned.
@@ -87,7 +87,7 @@ fn fit(curve: &Closed, s: f64, side: f64, scale: CornerScale) -> Arm {
     };
     let (x, y) = (solve(0), solve(1));
     let row = |j: usize, scale: f64| Vector2::new(x[j], y[j]) * scale;
-    Arm { p: row(0, 1.0), v: row(1, side / scale.arm), a: row(2, 1.0 / (scale.arm * scale.arm)) }
+    CornerArm { p: row(0, 1.0), v: row(1, side / scale.arm), a: row(2, 1.0 / (scale.arm * scale.arm)) }
 }
 
 /// How far a corner may stand off the curve that rounds it, in gaps: farther ones are curves whose
@@ -97,7 +97,7 @@ const MAX_OFF: f64 = 2.5;
 const ROUNDS: usize = 3;
 
 /// The exact corner near `s`: where both arms' parabolas cross.
-fn locate(curve: &Closed, mut s: f64, scale: CornerScale) -> Option<Corner> {
+fn locate(curve: &Closed, mut s: f64, scale: CornerScale) -> Option<CurveCorner> {
     let mut found = None;
     for _ in 0..ROUNDS {
         let (behind, ahead) = (fit(curve, s, -1.0, scale), fit(curve, s, 1.0, scale));
@@ -107,7 +107,7 @@ fn locate(curve: &Closed, mut s: f64, scale: CornerScale) -> Option<Corner> {
         let point = Point2::from((behind.at(u) + ahead.at(v)) / 2.0);
         // The curve cuts the corner: it passes it half-way between both arms' parameters.
         s += (u + v) / 2.0;
-        found = Some(Corner { at: s.rem_euclid(curve.length()), point, turn });
+        found = Some(CurveCorner { at: s.rem_euclid(curve.length()), point, turn });
     }
     found.filter(|c| {
         let off = (curve.at(c.at) - c.point).norm();
@@ -117,7 +117,7 @@ fn locate(curve: &Closed, mut s: f64, scale: CornerScale) -> Option<Corner> {
 
 /// Newton's method for `behind(u) = ahead(v)` from the tangents' crossing; none where they run
 /// alongside each other or cross farther off than `limit`.
-fn crossing(behind: &Arm, ahead: &Arm, limit: f64) -> Option<(f64, f64)> {
+fn crossing(behind: &CornerArm, ahead: &CornerArm, limit: f64) -> Option<(f64, f64)> {
     let (mut u, mut v) = (0.0, 0.0);
     for _ in 0..12 {
         let gap = ahead.at(v) - behind.at(u);

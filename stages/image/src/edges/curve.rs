@@ -13,7 +13,7 @@ use toile_core::artifact::{Loop, Point2, Vector2};
 
 /// A corner of a closed curve.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Corner {
+pub(crate) struct CurveCorner {
     /// Arc length at which the curve passes it.
     pub(crate) at: f64,
     /// The exact point.
@@ -85,14 +85,14 @@ pub(crate) struct Smoothing {
 const CORNER_WEIGHT: f64 = 40.0;
 
 /// A stretch between corners: places and points, with weights.
-struct Stretch {
+struct CurveStretch {
     data: Vec<(f64, Point2, f64)>,
     length: f64,
     closed: bool,
 }
 
 /// The smoothed curve with its corners, evenly spaced between them.
-pub(crate) fn smooth(curve: &Closed, corners: &[Corner], scale: Smoothing) -> Loop {
+pub(crate) fn smooth(curve: &Closed, corners: &[CurveCorner], scale: Smoothing) -> Loop {
     let mut out = Loop::default();
     if corners.is_empty() {
         let stretch = whole(curve, scale);
@@ -116,13 +116,13 @@ pub(crate) fn smooth(curve: &Closed, corners: &[Corner], scale: Smoothing) -> Lo
 }
 
 /// The whole curve, with a window's length of it repeated on both sides.
-fn whole(curve: &Closed, scale: Smoothing) -> Stretch {
+fn whole(curve: &Closed, scale: Smoothing) -> CurveStretch {
     let (n, reach) = (curve.points.len() as i64, (scale.window / curve.step).ceil() as i64);
     let at = |i: i64| (i as f64 * curve.step, curve.points[i.rem_euclid(n) as usize], 1.0);
-    Stretch { data: (-reach..n + reach).map(at).collect(), length: curve.length(), closed: true }
+    CurveStretch { data: (-reach..n + reach).map(at).collect(), length: curve.length(), closed: true }
 }
 
-fn between(curve: &Closed, from: &Corner, to: &Corner, scale: Smoothing) -> Stretch {
+fn between(curve: &Closed, from: &CurveCorner, to: &CurveCorner, scale: Smoothing) -> CurveStretch {
     let total = curve.length();
     let span = match (to.at - from.at).rem_euclid(total) {
         s if s < curve.step => total,
@@ -140,11 +140,11 @@ fn between(curve: &Closed, from: &Corner, to: &Corner, scale: Smoothing) -> Stre
     let ends = [(0.0, from.point, CORNER_WEIGHT), (span, to.point, CORNER_WEIGHT)];
     let mut data: Vec<_> = ends[..1].iter().copied().chain(inner).collect();
     data.push(ends[1]);
-    Stretch { data, length: span, closed: false }
+    CurveStretch { data, length: span, closed: false }
 }
 
 /// Points of the stretch at steps of half the spacing, both ends included.
-fn smoothed(stretch: &Stretch, scale: Smoothing) -> Vec<Point2> {
+fn smoothed(stretch: &CurveStretch, scale: Smoothing) -> Vec<Point2> {
     let count = ((2.0 * stretch.length / scale.spacing).ceil() as usize).max(2);
     let weights = robust_weights(stretch, scale.window);
     (0..=count)
@@ -155,7 +155,7 @@ fn smoothed(stretch: &Stretch, scale: Smoothing) -> Vec<Point2> {
 
 /// Weights that take points off that leave the curve (Tukey's biweight, at six times the median
 /// distance).
-fn robust_weights(stretch: &Stretch, window: f64) -> Vec<f64> {
+fn robust_weights(stretch: &CurveStretch, window: f64) -> Vec<f64> {
     let plain: Vec<f64> = stretch.data.iter().map(|d| d.2).collect();
     let residuals: Vec<f64> =
         stretch.data.par_iter().map(|d| (local(stretch, &plain, d.0, window) - d.1).norm()).collect();
@@ -168,7 +168,7 @@ fn robust_weights(stretch: &Stretch, window: f64) -> Vec<f64> {
 
 /// The value at `s` of the parabola fitted to the points in a window about it. The window grows at
 /// the ends of a stretch, so that it always holds about as many points.
-fn local(stretch: &Stretch, weights: &[f64], s: f64, window: f64) -> Point2 {
+fn local(stretch: &CurveStretch, weights: &[f64], s: f64, window: f64) -> Point2 {
     let beyond = match stretch.closed {
         true => 0.0,
         false => (window - s).max(0.0).max(window - (stretch.length - s)),

@@ -4,8 +4,8 @@
 //! about 10 ns a pixel of the band. Limits: a second derivative without smoothing answers to grain
 //! first; it needs a denoiser before it.
 
-use super::band::{Band, Patch};
-use super::operator::{Operator, Response};
+use super::band::{PicturePatch, TileBand};
+use super::operator::{Operator, OperatorResponse};
 use super::outline::detect;
 use image::RgbImage;
 use toile_core::prelude::*;
@@ -33,11 +33,11 @@ impl Laplacian {
 }
 
 impl Operator for Laplacian {
-    fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a> {
-        let tiles = band.map(photo, 1, |grey: Patch| {
+    fn respond<'a>(&self, photo: &RgbImage, band: &'a TileBand) -> OperatorResponse<'a> {
+        let tiles = band.map(photo, 1, |grey: PicturePatch| {
             let (one, second) = ([0.0, 1.0, 0.0], [1.0, -2.0, 1.0]);
             grey.separable(&second, &one).zip(&grey.separable(&one, &second), |a, b| a + b)
         });
-        Response::ZeroCrossing { signal: band.plane(tiles), least: self.threshold }
+        OperatorResponse::ZeroCrossing { signal: band.plane(tiles), least: self.threshold }
     }
 }

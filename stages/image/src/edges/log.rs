@@ -5,8 +5,8 @@
 //! about 70 ns a pixel of the band. Limits: on curved rims zero crossings lie a little outside the
 //! edge.
 
-use super::band::{Band, Patch};
-use super::operator::{Operator, Response, gaussian};
+use super::band::{PicturePatch, TileBand};
+use super::operator::{Operator, OperatorResponse, gaussian};
 use super::outline::detect;
 use image::RgbImage;
 use toile_core::prelude::*;
@@ -35,12 +35,12 @@ impl LaplacianOfGaussian {
 }
 
 impl Operator for LaplacianOfGaussian {
-    fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a> {
+    fn respond<'a>(&self, photo: &RgbImage, band: &'a TileBand) -> OperatorResponse<'a> {
         let (smooth, second) = (gaussian(self.sigma), second_derivative(self.sigma));
-        let tiles: Vec<Patch> = band.map(photo, smooth.len() / 2, |grey| {
+        let tiles: Vec<PicturePatch> = band.map(photo, smooth.len() / 2, |grey| {
             grey.separable(&second, &smooth).zip(&grey.separable(&smooth, &second), |a, b| a + b)
         });
-        Response::ZeroCrossing { signal: band.plane(tiles), least: self.threshold }
+        OperatorResponse::ZeroCrossing { signal: band.plane(tiles), least: self.threshold }
     }
 }
 

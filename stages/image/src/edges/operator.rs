@@ -1,14 +1,14 @@
 //! What an edge operator sees around the boundary, and the kernels the operators are made of.
 
-use super::band::{Band, Patch, Plane};
+use super::band::{BandPicture, PicturePatch, TileBand};
 use image::RgbImage;
 
 /// An operator's answer in the band.
-pub(crate) enum Response<'a> {
+pub(crate) enum OperatorResponse<'a> {
     /// An edge is a ridge of the signal.
     Ridge {
         /// Gradient magnitude.
-        signal: Plane<'a>,
+        signal: BandPicture<'a>,
         /// What counts as an edge.
         accept: Accept<'a>,
         /// Where the operator is centred, pixels right of and below its pixel.
@@ -17,7 +17,7 @@ pub(crate) enum Response<'a> {
     /// An edge is a zero crossing of the signal.
     ZeroCrossing {
         /// Second derivative.
-        signal: Plane<'a>,
+        signal: BandPicture<'a>,
         /// The least change of the signal over a pixel, grey levels a pixel squared.
         least: f64,
     },
@@ -28,13 +28,13 @@ pub(crate) enum Accept<'a> {
     /// All that reach a level.
     Above(f64),
     /// Those within a pixel of a marked one.
-    Marked(Plane<'a>),
+    Marked(BandPicture<'a>),
 }
 
 /// An edge operator.
 pub(crate) trait Operator: Sync {
     /// Evaluates it in the band.
-    fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a>;
+    fn respond<'a>(&self, photo: &RgbImage, band: &'a TileBand) -> OperatorResponse<'a>;
 
     /// By how much the smoothing window along the outline is longer than usual.
     fn smooth(&self) -> f64 {
@@ -52,7 +52,7 @@ pub(crate) fn gaussian(sigma: f64) -> Vec<f32> {
 
 /// Central difference along one axis, smoothed by `across` on the other: Sobel's (1, 2, 1) or
 /// Prewitt's (1, 1, 1).
-pub(crate) fn gradient(grey: &Patch, across: [f32; 3]) -> (Patch, Patch) {
+pub(crate) fn gradient(grey: &PicturePatch, across: [f32; 3]) -> (PicturePatch, PicturePatch) {
     let difference = [-1.0, 0.0, 1.0];
     (grey.separable(&difference, &across), grey.separable(&across, &difference))
 }
@@ -60,13 +60,13 @@ pub(crate) fn gradient(grey: &Patch, across: [f32; 3]) -> (Patch, Patch) {
 /// A ridge operator without hysteresis: gradient magnitude of 3 x 3 kernels over a threshold.
 pub(crate) fn plain_ridge<'a>(
     photo: &RgbImage,
-    band: &'a Band,
+    band: &'a TileBand,
     across: [f32; 3],
     threshold: f64,
-) -> Response<'a> {
+) -> OperatorResponse<'a> {
     let tiles = band.map(photo, 1, |grey| {
         let (gx, gy) = gradient(&grey, across);
         gx.zip(&gy, f32::hypot)
     });
-    Response::Ridge { signal: band.plane(tiles), accept: Accept::Above(threshold), centre: 0.0 }
+    OperatorResponse::Ridge { signal: band.plane(tiles), accept: Accept::Above(threshold), centre: 0.0 }
 }

@@ -4,7 +4,7 @@
 //! a small photo and a large one of the same garment, and a child's vest and a man's, are treated
 //! alike.
 
-use super::band::Band;
+use super::band::TileBand;
 use super::corners::{self, CornerScale};
 use super::crossing;
 use super::curve::{self, Closed, Smoothing};
@@ -73,7 +73,7 @@ pub(crate) fn detect(
     let cracks: Vec<Point2> =
         std::iter::once(&outer).chain(&found).flat_map(|l| l.points.iter().copied()).collect();
     let size = [mask.pixels.width() as usize, mask.pixels.height() as usize];
-    let band = Band::around(size, &cracks, lengths.reach + 3.0);
+    let band = TileBand::around(size, &cracks, lengths.reach + 3.0);
     let response = operator.respond(&photo.pixels, &band);
     cx.check()?;
     cx.progress(0.6, "finding corners");
@@ -163,7 +163,7 @@ fn smooth_loop(points: &[Point2], lengths: &Lengths) -> Result<Loop, StageError>
         // Ragged borders can feign corners whose stretches cross each other: the one nearest to the
         // place goes.
         let Some(p) = crossing::first(std::iter::once(&smooth)) else { return Ok(smooth) };
-        let far = |c: &curve::Corner| (c.point - p).norm();
+        let far = |c: &curve::CurveCorner| (c.point - p).norm();
         let nearest = (0..corners.len()).min_by(|a, b| far(&corners[*a]).total_cmp(&far(&corners[*b])));
         match nearest.filter(|i| far(&corners[*i]) <= arm) {
             Some(i) => drop(corners.remove(i)),

@@ -4,8 +4,8 @@
 //! enhancement and extraction*, 1970); an edge is a ridge of its magnitude over a threshold. Cost:
 //! about 15 ns a pixel of the band. Limits: as Sobel's; slanted rims answer a little weaker.
 
-use super::band::Band;
-use super::operator::{Operator, Response, plain_ridge};
+use super::band::TileBand;
+use super::operator::{Operator, OperatorResponse, plain_ridge};
 use super::outline::detect;
 use image::RgbImage;
 use toile_core::prelude::*;
@@ -31,7 +31,7 @@ impl Prewitt {
 }
 
 impl Operator for Prewitt {
-    fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a> {
+    fn respond<'a>(&self, photo: &RgbImage, band: &'a TileBand) -> OperatorResponse<'a> {
         plain_ridge(photo, band, [1.0, 1.0, 1.0], self.threshold)
     }
 }

@@ -6,7 +6,7 @@
 //! Offsets that leave the median of their neighbours are dropped. Where nothing is seen the mask's
 //! own half-way crossing stays. Cost: about 1 us a boundary point.
 
-use super::operator::{Accept, Response};
+use super::operator::{Accept, OperatorResponse};
 use rayon::prelude::*;
 use toile_core::artifact::{Point2, Vector2};
 
@@ -31,7 +31,7 @@ pub(crate) struct Refined {
 }
 
 /// Moves a crack loop (pixels, y up) onto the edges within `reach` pixels.
-pub(crate) fn refine(cracks: &[Point2], response: &Response, reach: f64) -> Refined {
+pub(crate) fn refine(cracks: &[Point2], response: &OperatorResponse, reach: f64) -> Refined {
     let base = smooth_closed(cracks, BASE_SIGMA);
     let normals = normals(&smooth_closed(cracks, NORMAL_SIGMA));
     let raw: Vec<Option<f64>> =
@@ -69,11 +69,11 @@ fn normals(points: &[Point2]) -> Vec<Vector2> {
 }
 
 /// How far along the normal the best edge lies, if any is within reach.
-fn offset(response: &Response, p: Point2, normal: Vector2, reach: f64) -> Option<f64> {
+fn offset(response: &OperatorResponse, p: Point2, normal: Vector2, reach: f64) -> Option<f64> {
     let steps = (reach / STEP).ceil() as i64;
     let at = |k: i64| k as f64 * STEP;
     match response {
-        Response::Ridge { signal, accept, centre } => {
+        OperatorResponse::Ridge { signal, accept, centre } => {
             let shift = Vector2::new(-centre, *centre);
             let samples: Vec<f64> =
                 (-steps - 1..=steps + 1).map(|k| signal.sample(p + normal * at(k) + shift)).collect();
@@ -86,7 +86,7 @@ fn offset(response: &Response, p: Point2, normal: Vector2, reach: f64) -> Option
             })
             .map(|i| (i - (steps + 1) as f64) * STEP)
         }
-        Response::ZeroCrossing { signal, least } => {
+        OperatorResponse::ZeroCrossing { signal, least } => {
             let samples: Vec<f64> = (-steps..=steps).map(|k| signal.sample(p + normal * at(k))).collect();
             best_crossing(&samples, least * STEP).map(|i| (i - steps as f64) * STEP)
         }

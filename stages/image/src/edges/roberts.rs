@@ -6,8 +6,8 @@
 //! 8 ns a pixel of the band. Limits: the smallest operator, and so the one that noise misleads
 //! most.
 
-use super::band::{Band, Patch};
-use super::operator::{Accept, Operator, Response};
+use super::band::{PicturePatch, TileBand};
+use super::operator::{Accept, Operator, OperatorResponse};
 use super::outline::detect;
 use image::RgbImage;
 use toile_core::prelude::*;
@@ -33,19 +33,23 @@ impl Roberts {
 }
 
 impl Operator for Roberts {
-    fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a> {
+    fn respond<'a>(&self, photo: &RgbImage, band: &'a TileBand) -> OperatorResponse<'a> {
         let tiles = band.map(photo, 1, |grey| cross(&grey));
-        Response::Ridge { signal: band.plane(tiles), accept: Accept::Above(self.threshold), centre: 0.5 }
+        OperatorResponse::Ridge {
+            signal: band.plane(tiles),
+            accept: Accept::Above(self.threshold),
+            centre: 0.5,
+        }
     }
 }
 
 /// The cross of a patch; the result is smaller by one pixel on each side.
-fn cross(grey: &Patch) -> Patch {
+fn cross(grey: &PicturePatch) -> PicturePatch {
     let (n, side) = (grey.side, grey.side - 2);
     let at = |k: usize| {
         let i = (k / side + 1) * n + k % side + 1;
         let [a, b, c, d] = [i, i + 1, i + n, i + n + 1].map(|i| grey.data[i]);
         (a - d).hypot(b - c)
     };
-    Patch { side, data: (0..side * side).map(at).collect() }
+    PicturePatch { side, data: (0..side * side).map(at).collect() }
 }

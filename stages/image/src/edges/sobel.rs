@@ -4,8 +4,8 @@
 //! 1968); an edge is a ridge of its magnitude over a threshold. Cost: about 15 ns a pixel of the
 //! band. Limits: no smoothing along the gradient, so weave and grain answer as well.
 
-use super::band::Band;
-use super::operator::{Operator, Response, plain_ridge};
+use super::band::TileBand;
+use super::operator::{Operator, OperatorResponse, plain_ridge};
 use super::outline::detect;
 use image::RgbImage;
 use toile_core::prelude::*;
@@ -33,7 +33,7 @@ impl Sobel {
 }
 
 impl Operator for Sobel {
-    fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a> {
+    fn respond<'a>(&self, photo: &RgbImage, band: &'a TileBand) -> OperatorResponse<'a> {
         plain_ridge(photo, band, [1.0, 2.0, 1.0], self.threshold)
     }
 }

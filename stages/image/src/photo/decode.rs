@@ -7,7 +7,7 @@
 //! Cost: 12 megapixels of JPEG take about 0.1 s. Limits: no colour management (the pixels are taken
 //! as sRGB); of an animation and of a file of several pictures the first counts.
 
-use super::form::{Form, form};
+use super::form::{PictureFormat, form};
 use super::header::{self, Header};
 use image::{DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, RgbImage};
 use std::io::{Cursor, ErrorKind};
@@ -73,12 +73,12 @@ pub(super) fn upright_size(bytes: &[u8]) -> Option<(u32, u32)> {
 }
 
 /// A reader of a kind that is read.
-fn reader(kind: Form, bytes: &[u8]) -> ImageReader<Cursor<&[u8]>> {
+fn reader(kind: PictureFormat, bytes: &[u8]) -> ImageReader<Cursor<&[u8]>> {
     let format = match kind {
-        Form::Png => ImageFormat::Png,
-        Form::WebP => ImageFormat::WebP,
-        Form::Tiff => ImageFormat::Tiff,
-        Form::Jpeg | Form::Other(_) => ImageFormat::Jpeg,
+        PictureFormat::Png => ImageFormat::Png,
+        PictureFormat::WebP => ImageFormat::WebP,
+        PictureFormat::Tiff => ImageFormat::Tiff,
+        PictureFormat::Jpeg | PictureFormat::Other(_) => ImageFormat::Jpeg,
     };
     ImageReader::with_format(Cursor::new(bytes), format)
 }
@@ -88,12 +88,12 @@ pub(super) fn check(bytes: &[u8], name: &str) -> Result<(), StageError> {
     check_header(bytes, name).map(|_| ())
 }
 
-fn check_header(bytes: &[u8], name: &str) -> Result<(Form, Header), StageError> {
+fn check_header(bytes: &[u8], name: &str) -> Result<(PictureFormat, Header), StageError> {
     if bytes.is_empty() {
         return Err(damaged(name, "is empty"));
     }
     let kind = match form(bytes) {
-        Some(Form::Other(words)) => {
+        Some(PictureFormat::Other(words)) => {
             return Err(damaged(name, &format!("is {words}, which is not read")).hint(EXPORT));
         }
         Some(kind) => kind,

@@ -10,7 +10,7 @@ use super::tiff;
 
 /// A kind of picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Form {
+pub(super) enum PictureFormat {
     /// JPEG.
     Jpeg,
     /// PNG.
@@ -43,21 +43,21 @@ const OTHERS: [(usize, &[u8], &str); 14] = [
 const RAW: &str = "a camera's raw picture";
 
 /// The kind of picture that bytes begin like; none where they begin like none.
-pub(super) fn form(bytes: &[u8]) -> Option<Form> {
+pub(super) fn form(bytes: &[u8]) -> Option<PictureFormat> {
     match bytes {
-        [0xFF, 0xD8, ..] => return Some(Form::Jpeg),
-        [0x89, b'P', b'N', b'G', ..] => return Some(Form::Png),
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => return Some(Form::WebP),
+        [0xFF, 0xD8, ..] => return Some(PictureFormat::Jpeg),
+        [0x89, b'P', b'N', b'G', ..] => return Some(PictureFormat::Png),
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => return Some(PictureFormat::WebP),
         [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => {
-            return Some(if tiff::is_raw(bytes) { Form::Other(RAW) } else { Form::Tiff });
+            return Some(if tiff::is_raw(bytes) { PictureFormat::Other(RAW) } else { PictureFormat::Tiff });
         }
-        [_, _, _, _, b'f', b't', b'y', b'p', ..] => return brand(bytes).map(Form::Other),
+        [_, _, _, _, b'f', b't', b'y', b'p', ..] => return brand(bytes).map(PictureFormat::Other),
         _ => {}
     }
     let begins = |(at, signature, _): &&(usize, &[u8], &str)| {
         bytes.get(*at..).is_some_and(|b| b.starts_with(signature))
     };
-    OTHERS.iter().find(begins).map(|(_, _, words)| Form::Other(words))
+    OTHERS.iter().find(begins).map(|(_, _, words)| PictureFormat::Other(words))
 }
 
 /// What a file of the ISO base media format holds, by its major brand, else by those that it is
@@ -85,17 +85,17 @@ mod tests {
 
     #[test]
     fn kinds_are_told_by_their_first_bytes() {
-        let cases: [(&[u8], Option<Form>); 12] = [
-            (b"\xFF\xD8\xFF\xE0", Some(Form::Jpeg)),
-            (b"\x89PNG\r\n\x1A\n", Some(Form::Png)),
-            (b"RIFF\x10\0\0\0WEBPVP8 ", Some(Form::WebP)),
+        let cases: [(&[u8], Option<PictureFormat>); 12] = [
+            (b"\xFF\xD8\xFF\xE0", Some(PictureFormat::Jpeg)),
+            (b"\x89PNG\r\n\x1A\n", Some(PictureFormat::Png)),
+            (b"RIFF\x10\0\0\0WEBPVP8 ", Some(PictureFormat::WebP)),
             (b"RIFF\x10\0\0\0WAVEfmt ", None),
-            (b"MM\0*\0\0\0\x08", Some(Form::Tiff)),
-            (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", Some(Form::Other("a HEIC picture"))),
-            (b"\0\0\0\x1Cftypmif1\0\0\0\0mif1avifmiaf", Some(Form::Other("an AVIF picture"))),
-            (b"\0\0\0\x18ftypmif1\0\0\0\0mif1miaf", Some(Form::Other("a HEIC picture"))),
-            (b"\0\0\0\x18ftypisom\0\0\x02\0isomiso2", Some(Form::Other("a film"))),
-            (b"GIF89a", Some(Form::Other("a GIF picture"))),
+            (b"MM\0*\0\0\0\x08", Some(PictureFormat::Tiff)),
+            (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", Some(PictureFormat::Other("a HEIC picture"))),
+            (b"\0\0\0\x1Cftypmif1\0\0\0\0mif1avifmiaf", Some(PictureFormat::Other("an AVIF picture"))),
+            (b"\0\0\0\x18ftypmif1\0\0\0\0mif1miaf", Some(PictureFormat::Other("a HEIC picture"))),
+            (b"\0\0\0\x18ftypisom\0\0\x02\0isomiso2", Some(PictureFormat::Other("a film"))),
+            (b"GIF89a", Some(PictureFormat::Other("a GIF picture"))),
             (b"a recipe for soup", None),
             (b"", None),
         ];

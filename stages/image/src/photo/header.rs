@@ -11,7 +11,7 @@
 //! Cost: one pass over the bytes, about 1 ms a megabyte. Limits: markers after a JPEG's end of
 //! image (thumbnails, videos of phones) are not looked at.
 
-use super::form::Form;
+use super::form::PictureFormat;
 use super::tiff::Directory;
 use std::borrow::Cow;
 
@@ -28,24 +28,24 @@ pub(super) struct Header {
 
 /// The header of a picture of a kind that is read; `None` where the bytes are of another, or end
 /// before the size.
-pub(super) fn read(form: Form, bytes: &[u8]) -> Option<Header> {
+pub(super) fn read(form: PictureFormat, bytes: &[u8]) -> Option<Header> {
     match form {
-        Form::Jpeg => jpeg(bytes),
-        Form::Png => png(bytes),
-        Form::WebP => webp(bytes),
-        Form::Tiff => {
+        PictureFormat::Jpeg => jpeg(bytes),
+        PictureFormat::Png => png(bytes),
+        PictureFormat::WebP => webp(bytes),
+        PictureFormat::Tiff => {
             let directory = Directory::read(bytes)?;
             let (width, height) = directory.size()?;
             Some(Header { width, height, complete: directory.is_complete() })
         }
-        Form::Other(_) => None,
+        PictureFormat::Other(_) => None,
     }
 }
 
 /// The bytes without what is packed in them and not used.
-pub(super) fn without_extras(form: Form, bytes: &[u8]) -> Cow<'_, [u8]> {
+pub(super) fn without_extras(form: PictureFormat, bytes: &[u8]) -> Cow<'_, [u8]> {
     let is_extra = |kind: &[u8]| matches!(kind, b"iCCP" | b"zTXt" | b"iTXt" | b"tEXt");
-    if form != Form::Png || !chunks(bytes).any(|(kind, _)| is_extra(kind)) {
+    if form != PictureFormat::Png || !chunks(bytes).any(|(kind, _)| is_extra(kind)) {
         return Cow::Borrowed(bytes);
     }
     let signature = bytes.get(..8).unwrap_or(bytes).to_vec();

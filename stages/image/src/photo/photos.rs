@@ -125,7 +125,7 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
     let read =
         |((file, object), name): &((&str, Option<ScaleObject>), &str)| read_file(file, *object, name, cx);
     let pictures = files.par_iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    let pictures: BTreeMap<_, Picture> = files.iter().map(|(key, _)| *key).zip(pictures).collect();
+    let pictures: BTreeMap<_, DecodedPicture> = files.iter().map(|(key, _)| *key).zip(pictures).collect();
     cx.progress(1.0, "photos read");
     let photo = |(name, (file, mirrored)): (&String, (&PhotoFile, bool))| {
         let picture = pictures.get(&(file.file.as_str(), file.scale))?;
@@ -159,14 +159,14 @@ fn named(name: &str) -> Result<(), StageError> {
 }
 
 /// Decoded pixels that several photos may share.
-struct Picture {
+struct DecodedPicture {
     pixels: Shared<image::RgbImage>,
     alpha: Option<Shared<image::GrayImage>>,
     /// Where an object in it tells.
     px_per_metre: Option<f64>,
 }
 
-impl Picture {
+impl DecodedPicture {
     fn photo(&self, file: &PhotoFile, mirrored: bool) -> Photo {
         Photo {
             pixels: self.pixels.clone(),
@@ -186,7 +186,7 @@ fn read_file(
     object: Option<ScaleObject>,
     name: &str,
     cx: &Context,
-) -> Result<Picture, StageError> {
+) -> Result<DecodedPicture, StageError> {
     cx.check()?;
     let bytes = cx.read(file).map_err(|e| e.at("photos"))?;
     let decoded = decode(&bytes, file).map_err(|e| e.at("photos"))?;
@@ -198,5 +198,5 @@ fn read_file(
             (above, Some(scale))
         }
     };
-    Ok(Picture { pixels: Shared::new(pixels), alpha: alpha.map(Shared::new), px_per_metre })
+    Ok(DecodedPicture { pixels: Shared::new(pixels), alpha: alpha.map(Shared::new), px_per_metre })
 }

@@ -8,7 +8,7 @@ use super::Decoded;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use serde::{Deserialize, Serialize};
 use toile_core::prelude::*;
-use toile_scale::{Found, Kind, Object, RectifyOptions, find, rectify};
+use toile_scale::{Found, KnownObject, RectifyOptions, ScaleKind, find, rectify};
 
 /// An object of known size beside the garment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -51,13 +51,15 @@ mod micrometres {
 }
 
 impl ScaleObject {
-    fn object(self) -> Object {
+    fn object(self) -> KnownObject {
         match self {
-            ScaleObject::BankCard => Object::BankCard,
-            ScaleObject::A4 => Object::A4,
-            ScaleObject::Letter => Object::Letter,
-            ScaleObject::Ruler => Object::Ruler,
-            ScaleObject::Chessboard { square } => Object::Chessboard { square_um: square, corners: None },
+            ScaleObject::BankCard => KnownObject::BankCard,
+            ScaleObject::A4 => KnownObject::A4,
+            ScaleObject::Letter => KnownObject::Letter,
+            ScaleObject::Ruler => KnownObject::Ruler,
+            ScaleObject::Chessboard { square } => {
+                KnownObject::Chessboard { square_um: square, corners: None }
+            }
         }
     }
 }
@@ -82,7 +84,7 @@ pub(super) fn from_above(
     let found = find(&decoded.pixels, object.object()).map_err(named)?;
     cx.check()?;
     tell(&found, file, cx);
-    if found.kind == Kind::Line {
+    if found.kind == ScaleKind::Line {
         return Ok((decoded, found.px_per_metre));
     }
     let above = rectify(&decoded.pixels, &found, &RectifyOptions::default()).map_err(named)?;

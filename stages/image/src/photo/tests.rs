@@ -346,7 +346,7 @@ fn a_profile_that_is_packed_in_a_png_is_not_unpacked() {
     encoder.write_image(&picture, 20, 10, ExtendedColorType::Rgb8).unwrap();
     let has_profile = |bytes: &[u8]| bytes.windows(4).any(|w| w == b"iCCP");
     assert!(has_profile(&bytes));
-    assert!(!has_profile(&super::header::without_extras(super::form::Form::Png, &bytes)));
+    assert!(!has_profile(&super::header::without_extras(super::form::PictureFormat::Png, &bytes)));
     assert_eq!(decode(&bytes, "a.png").unwrap().pixels, picture);
 }
 

@@ -27,7 +27,7 @@ pub(super) struct Directory<'a> {
 }
 
 /// Values of a tag: how many, bytes of each, where.
-struct Values {
+struct TagValues {
     count: u64,
     size: u64,
     at: u64,
@@ -52,7 +52,7 @@ impl<'a> Directory<'a> {
         Some(if self.big_endian { slice.iter().fold(0, add) } else { slice.iter().rev().fold(0, add) })
     }
 
-    fn values(&self, tag: u64) -> Option<Values> {
+    fn values(&self, tag: u64) -> Option<TagValues> {
         let length = 4 + 2 * self.word;
         let at =
             (0..self.count).map(|i| self.first + i * length).find(|at| self.number(*at, 2) == Some(tag))?;
@@ -67,11 +67,11 @@ impl<'a> Directory<'a> {
         let place = at + 4 + self.word;
         // Values that fit stand in the entry itself.
         let at = if count.checked_mul(size)? <= self.word { place } else { self.number(place, self.word)? };
-        Some(Values { count, size, at })
+        Some(TagValues { count, size, at })
     }
 
     fn value(&self, tag: u64, index: u64) -> Option<u64> {
-        let Values { count, size, at } = self.values(tag)?;
+        let TagValues { count, size, at } = self.values(tag)?;
         (index < count).then_some(())?;
         self.number(at.checked_add(index.checked_mul(size)?)?, size)
     }
@@ -85,7 +85,8 @@ impl<'a> Directory<'a> {
     pub(super) fn is_complete(&self) -> bool {
         [STRIPS, TILES].into_iter().all(|(offsets, lengths)| {
             let (Some(from), Some(long)) = (self.values(offsets), self.values(lengths)) else { return true };
-            let number = |v: &Values, i: u64| self.number(v.at.checked_add(i.checked_mul(v.size)?)?, v.size);
+            let number =
+                |v: &TagValues, i: u64| self.number(v.at.checked_add(i.checked_mul(v.size)?)?, v.size);
             let ends = |i: u64| number(&from, i)?.checked_add(number(&long, i)?);
             (0..from.count.min(long.count)).all(|i| ends(i).is_some_and(|end| end <= self.bytes.len() as u64))
         })

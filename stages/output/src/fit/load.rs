@@ -27,7 +27,7 @@ pub(super) type Yarns = [f64; 2];
 
 /// What the cloth carries.
 #[derive(Debug, Clone)]
-pub(super) struct Load {
+pub(super) struct ClothLoad {
     /// Strain, one a triangle.
     pub strain: Vec<Yarns>,
     /// Tension, N per metre of cut width, one a triangle.
@@ -38,7 +38,7 @@ pub(super) struct Load {
     pub area: Vec<f64>,
 }
 
-impl Load {
+impl ClothLoad {
     /// Of a garment on its body.
     ///
     /// # Errors
@@ -59,7 +59,8 @@ impl Load {
             for t in panel.triangles.clone() {
                 let nodes = garment.triangles[t];
                 let flat = corners.as_ref().map_or_else(|| nodes.map(|i| garment.rest[i as usize]), |c| c[t]);
-                let piece = Piece::new(flat, nodes.map(|i| garment.positions[i as usize].coords), &law);
+                let piece =
+                    DeformedTriangle::new(flat, nodes.map(|i| garment.positions[i as usize].coords), &law);
                 strain.push(piece.strain);
                 tension.push(piece.tension);
                 let weight = Vector3::y() * (-GRAVITY * fabric.density * piece.flat_area / 3.0);
@@ -77,7 +78,7 @@ impl Load {
 }
 
 /// A triangle of cloth, deformed.
-struct Piece {
+struct DeformedTriangle {
     strain: Yarns,
     tension: Yarns,
     forces: [Vector3; 3],
@@ -85,7 +86,7 @@ struct Piece {
     area: f64,
 }
 
-impl Piece {
+impl DeformedTriangle {
     fn new([a, b, c]: [Point2; 3], [p, q, r]: [Vector3; 3], law: &Woven) -> Self {
         let area = (q - p).cross(&(r - p)).norm() / 2.0;
         let flat = Matrix2::from_columns(&[b - a, c - a]);

@@ -5,7 +5,7 @@
 //! signs. No light falls on the cloth, so a colour is the legend's.
 
 use crate::render::parts::{body_mesh, mannequin, panel_mesh, plain_cloth};
-use crate::render::{Form, Scene, View, jpeg};
+use crate::render::{ModelScene, PictureForm, View, jpeg};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{Rgb, RgbImage};
@@ -40,7 +40,7 @@ const SHADES: u32 = 256;
 
 /// What a map shows.
 #[derive(Debug, Clone)]
-pub(super) struct Map<'a> {
+pub(super) struct VertexMap<'a> {
     pub title: &'a str,
     pub unit: &'a str,
     /// One a vertex.
@@ -49,7 +49,7 @@ pub(super) struct Map<'a> {
     pub is_signed: bool,
 }
 
-impl Map<'_> {
+impl VertexMap<'_> {
     /// The end of the scale: a round number at or above all but one value in a hundred.
     pub(super) fn end(&self) -> f64 {
         let mut sizes: Vec<f64> = self.values.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
@@ -61,7 +61,7 @@ impl Map<'_> {
     pub(super) fn draw(&self, garment: &Garment, body: Option<&Body>, height: u32) -> Option<String> {
         let end = self.end();
         let model = self.model(garment, body, end);
-        let scene = Scene::draft(&model);
+        let scene = ModelScene::draft(&model);
         let views = [View::front(height), View::back(height)];
         let width = views[0].width;
         let mut svg = format!(
@@ -72,7 +72,7 @@ impl Map<'_> {
             self.title
         );
         for (k, view) in views.iter().enumerate() {
-            let Form::Jpeg(bytes) = jpeg(&scene.render(view))? else { return None };
+            let PictureForm::Jpeg(bytes) = jpeg(&scene.render(view))? else { return None };
             let _ = writeln!(
                 svg,
                 "<image x=\"{}\" y=\"0\" width=\"{width}\" height=\"{height}\" href=\"data:image/jpeg;base64,{}\"/>",

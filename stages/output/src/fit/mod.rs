@@ -8,8 +8,8 @@ mod tape;
 mod tests;
 mod words;
 
-use self::load::Load;
-use self::map::Map;
+use self::load::ClothLoad;
+use self::map::VertexMap;
 use self::openings::{finished, openings};
 use crate::file_names::check_name;
 use rayon::prelude::*;
@@ -65,7 +65,7 @@ impl Fit {
         check_name(&self.name)?;
         let garment = with_pattern(garment, flat);
         garment.check_solvable()?;
-        let load = Load::of(garment, collider, cx)?;
+        let load = ClothLoad::of(garment, collider, cx)?;
         let open = openings(garment);
         let girths = body.map(|b| tape::girths(garment, b, &open)).unwrap_or_default();
         let measures = finished(garment, body, &open);
@@ -95,7 +95,7 @@ impl Fit {
         &self,
         garment: &Garment,
         body: Option<&Body>,
-        load: &Load,
+        load: &ClothLoad,
         cx: &Context,
     ) -> Result<Vec<OutputFile>, StageError> {
         if self.pictures == 0 {
@@ -115,7 +115,7 @@ impl Fit {
             maps.push(("pressure", "pressure on the body", "kPa", pressure, false));
         }
         let draw = |(file, title, unit, values, is_signed): &(&str, &str, &str, Vec<f64>, bool)| {
-            let map = Map { title, unit, values, is_signed: *is_signed };
+            let map = VertexMap { title, unit, values, is_signed: *is_signed };
             let fault = || StageError::internal(format!("the map of {file} cannot be drawn"));
             let svg = map.draw(garment, body, self.pictures).ok_or_else(fault)?;
             Ok(OutputFile::new(format!("{}_{file}.svg", self.name), svg.into_bytes()))
@@ -143,7 +143,7 @@ fn ease(girths: &BTreeMap<String, GirthFigures>) -> Value {
     Value::Object(girths.iter().map(one).collect())
 }
 
-fn panels(garment: &Garment, load: &Load) -> Value {
+fn panels(garment: &Garment, load: &ClothLoad) -> Value {
     let one = |p: &GarmentPanel| {
         let of = |all: &[load::Yarns], k: usize| spread(all[p.triangles.clone()].iter().map(|y| y[k]));
         let figures = json!({
@@ -165,7 +165,7 @@ fn spread(values: impl Iterator<Item = f64>) -> Value {
     json!({ "p1": at(0.01), "p50": at(0.5), "p99": at(0.99) })
 }
 
-fn pressure(load: &Load, comfort: f64, tight: &[words::Tight]) -> Value {
+fn pressure(load: &ClothLoad, comfort: f64, tight: &[words::TightPlace]) -> Value {
     let mut on: Vec<f64> = load.pressure.iter().flatten().map(|p| p * 1e-3).collect();
     if on.is_empty() {
         return Value::Null;

@@ -1,12 +1,12 @@
 //! Fit on shapes whose figures are known exactly.
 #![allow(clippy::unwrap_used)]
 
-use super::load::Load;
+use super::load::ClothLoad;
 use super::openings::{finished, openings};
 use super::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use toile_fixtures::cloth::{Capsules, Grid, garment, plain};
+use toile_fixtures::cloth::{Capsules, ClothGrid, garment, plain};
 
 const COLUMNS: usize = 240;
 const STIFFNESS: f64 = 500.0;
@@ -20,7 +20,8 @@ fn polygon(radius: f64) -> f64 {
 /// without weight.
 fn tube(radius: f64, strain: f64) -> Garment {
     let around = polygon(radius) / (1.0 + strain);
-    let grid = Grid { columns: COLUMNS, rows: 12, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };
+    let grid =
+        ClothGrid { columns: COLUMNS, rows: 12, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };
     let fabric = Arc::new(Fabric { area_density: 1e-9, ..(*plain(STIFFNESS, 50.0, 0.0)).clone() });
     let mut tube = garment(&[("tube", &grid)], &fabric);
     for (p, flat) in tube.positions.iter_mut().zip(&mut tube.rest) {
@@ -40,7 +41,7 @@ fn cylinder(radius: f64) -> Collider {
 fn a_tube_around_a_cylinder_presses_with_tension_over_radius() {
     for (radius, strain) in [(0.15, 0.02), (0.05, 0.1), (0.3, 0.004)] {
         let tube = tube(radius, strain);
-        let load = Load::of(&tube, Some(&cylinder(radius)), &Context::quiet()).unwrap();
+        let load = ClothLoad::of(&tube, Some(&cylinder(radius)), &Context::quiet()).unwrap();
         let hoop = load.strain[COLUMNS][1];
         assert!((hoop / strain - 1.0).abs() < 0.01, "strain {hoop} of {strain}");
         let tension = load.tension[COLUMNS][1];
@@ -54,7 +55,7 @@ fn a_tube_around_a_cylinder_presses_with_tension_over_radius() {
 
 #[test]
 fn cloth_off_the_body_has_no_pressure() {
-    let load = Load::of(&tube(0.15, 0.02), Some(&cylinder(0.1)), &Context::quiet()).unwrap();
+    let load = ClothLoad::of(&tube(0.15, 0.02), Some(&cylinder(0.1)), &Context::quiet()).unwrap();
     assert!(load.pressure.iter().all(Option::is_none));
 }
 

@@ -1,6 +1,6 @@
 //! Where a garment is too tight, in words.
 
-use super::load::Load;
+use super::load::ClothLoad;
 use std::collections::BTreeMap;
 use toile_core::artifact::{Body, Garment, Point3};
 
@@ -9,7 +9,7 @@ const ARM: f64 = 0.09;
 
 /// A part of the body on which the cloth presses too hard.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tight {
+pub(super) struct TightPlace {
     /// `front of the hip`.
     pub place: String,
     /// Square metres above the limit.
@@ -18,7 +18,7 @@ pub(super) struct Tight {
     pub pressure: f64,
 }
 
-impl Tight {
+impl TightPlace {
     /// For the user; `comfort` in kPa.
     pub(super) fn sentence(&self, comfort: f64) -> String {
         format!(
@@ -36,11 +36,11 @@ impl Tight {
 pub(super) fn tight(
     garment: &Garment,
     body: Option<&Body>,
-    load: &Load,
+    load: &ClothLoad,
     limit: f64,
     over: f64,
-) -> Vec<Tight> {
-    let mut places: BTreeMap<String, Tight> = BTreeMap::new();
+) -> Vec<TightPlace> {
+    let mut places: BTreeMap<String, TightPlace> = BTreeMap::new();
     for (i, p) in garment.positions.iter().enumerate() {
         let Some(pressure) = load.pressure[i].filter(|p| *p > limit) else { continue };
         // A joined vertex counts once.
@@ -48,11 +48,11 @@ pub(super) fn tight(
             continue;
         }
         let place = body.map_or_else(|| "body".to_owned(), |b| part(b, p));
-        let entry = places.entry(place.clone()).or_insert(Tight { place, area: 0.0, pressure: 0.0 });
+        let entry = places.entry(place.clone()).or_insert(TightPlace { place, area: 0.0, pressure: 0.0 });
         entry.area += load.area[i];
         entry.pressure = entry.pressure.max(pressure);
     }
-    let mut all: Vec<Tight> = places.into_values().filter(|t| t.area > over).collect();
+    let mut all: Vec<TightPlace> = places.into_values().filter(|t| t.area > over).collect();
     all.sort_by(|a, b| b.pressure.total_cmp(&a.pressure).then_with(|| a.place.cmp(&b.place)));
     all
 }
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_warning_says_where_how_much_and_what_to_do() {
-        let tight = Tight { place: "front of the hip".into(), area: 0.0042, pressure: 7140.0 };
+        let tight = TightPlace { place: "front of the hip".into(), area: 0.0042, pressure: 7140.0 };
         assert_eq!(
             tight.sentence(5.9),
             "it is tight at the front of the hip: up to 7.1 kPa on 42 cm2, and from 5.9 kPa on people call it tight; let it out there, or take \

@@ -4,7 +4,7 @@ use super::flattened::{Care, Request};
 use toile_core::prelude::*;
 use toile_flatten::care::Objective;
 use toile_flatten::flatteners::arap;
-use toile_flatten::newton::NewtonOptions;
+use toile_flatten::newton::StoppingLimits;
 
 /// Lays each piece flat so that every triangle keeps its shape as far as its neighbours let it: the
 /// least error of area.
@@ -36,7 +36,7 @@ impl Arap {
         pattern: Option<&Pattern>,
         cx: &Context,
     ) -> Result<(Pattern, Garment), StageError> {
-        let newton = NewtonOptions { iterations: self.iterations as usize, ..NewtonOptions::default() };
+        let newton = StoppingLimits { iterations: self.iterations as usize, ..StoppingLimits::default() };
         let objective = Objective::Arap;
         let options = toile_flatten::flatteners::ArapOptions { newton, ..Default::default() };
         let request = Request {

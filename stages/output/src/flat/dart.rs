@@ -2,7 +2,7 @@
 
 use super::fault::flatten_fault;
 use super::file::list;
-use super::sheet::Sheet;
+use super::sheet::GarmentPieces;
 use toile_core::prelude::*;
 use toile_flatten::care::{Dart, DartOptions, Objective, propose_darts};
 use toile_flatten::flatteners::Placement;
@@ -49,7 +49,7 @@ impl Darts {
 
 /// The darts of each piece as vertices from the boundary to the tip, each told.
 pub(super) fn dart_paths(
-    sheet: &Sheet,
+    sheet: &GarmentPieces,
     objective: &Objective,
     placements: &[Placement],
     darts: Darts,

@@ -5,12 +5,12 @@
 //! one seam or in none. An edge of which all vertices lie on a line is a line, others keep all
 //! their vertices. Cost: linear in the boundary.
 
-use super::sheet::Sheet;
+use super::sheet::GarmentPieces;
 use nalgebra::Matrix2x3;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 use toile_flatten::care::boundary_chains;
-use toile_flatten::islands::{Chain, Piece as SurfacePiece, Seam as PieceSeam};
+use toile_flatten::islands::{Chain, SurfacePiece, SurfaceSeam};
 
 /// A boundary vertex is a corner if its angle differs by more than this from a straight line,
 /// degrees.
@@ -21,14 +21,14 @@ const STRAIGHT: f64 = 1e-6;
 const GRAIN: f64 = 0.5;
 
 /// An edge of a piece: its loop, its number there, and its vertices along the boundary.
-struct Side {
+struct DrawnEdge {
     of_loop: usize,
     chain: Vec<u32>,
 }
 
 /// What the pieces of a pattern have beside their outlines.
-pub(super) struct Drawing<'a> {
-    pub(super) sheet: &'a Sheet,
+pub(super) struct PatternDrawing<'a> {
+    pub(super) sheet: &'a GarmentPieces,
     /// A flat place for each vertex of each piece.
     pub(super) flat: &'a [Vec<Point2>],
     /// The garment that the pieces come from.
@@ -40,12 +40,12 @@ pub(super) struct Drawing<'a> {
     pub(super) name: String,
 }
 
-impl Drawing<'_> {
+impl PatternDrawing<'_> {
     /// The pattern, and what it could not hold.
     pub(super) fn pattern(&self) -> (Pattern, Vec<String>) {
         let seams = &self.sheet.pieces.seams;
         let pieces = &self.sheet.pieces.pieces;
-        let sides: Vec<Vec<Side>> = (0..pieces.len()).map(|i| self.sides(i)).collect();
+        let sides: Vec<Vec<DrawnEdge>> = (0..pieces.len()).map(|i| self.sides(i)).collect();
         let lookups: Vec<BTreeMap<u32, usize>> = sides.iter().map(|s| starts(s)).collect();
         let known = self.sheet.known_seams(self.garment);
         let names = self.edge_names(&sides, &lookups, &known);
@@ -85,9 +85,9 @@ impl Drawing<'_> {
     }
 
     /// The edges of a piece.
-    fn sides(&self, i: usize) -> Vec<Side> {
+    fn sides(&self, i: usize) -> Vec<DrawnEdge> {
         let surface = &self.sheet.pieces.pieces[i].surface;
-        let of_piece = |s: &PieceSeam| {
+        let of_piece = |s: &SurfaceSeam| {
             [s.a.clone(), s.b.clone()].into_iter().filter(|c| c.piece == i).collect::<Vec<_>>()
         };
         let chains = self.sheet.pieces.seams.iter().flat_map(of_piece);
@@ -105,14 +105,15 @@ impl Drawing<'_> {
                 loop_of.insert(*v, k);
             });
         }
-        let side = |chain: Vec<u32>| Side { of_loop: loop_of.get(&chain[0]).copied().unwrap_or(0), chain };
+        let side =
+            |chain: Vec<u32>| DrawnEdge { of_loop: loop_of.get(&chain[0]).copied().unwrap_or(0), chain };
         chains.into_iter().map(side).collect()
     }
 
     /// Names of edges by piece: what the seams of the garment call them, else numbers.
     fn edge_names(
         &self,
-        sides: &[Vec<Side>],
+        sides: &[Vec<DrawnEdge>],
         lookups: &[BTreeMap<u32, usize>],
         known: &[Option<usize>],
     ) -> Vec<Vec<String>> {
@@ -140,7 +141,7 @@ impl Drawing<'_> {
         names.into_iter().map(finish).collect()
     }
 
-    fn piece(&self, i: usize, sides: &[Side], names: &[String], notes: &mut Vec<String>) -> Piece {
+    fn piece(&self, i: usize, sides: &[DrawnEdge], names: &[String], notes: &mut Vec<String>) -> Piece {
         let surface = &self.sheet.pieces.pieces[i];
         let flat = &self.flat[i];
         let name = &self.sheet.names[i];
@@ -187,7 +188,7 @@ impl Drawing<'_> {
 
     /// The legs of a dart meet in its tip; other seams are what the garment calls them, if their
     /// sides came out alike.
-    fn seam_kind(&self, seam: &PieceSeam, known: Option<usize>) -> SeamKind {
+    fn seam_kind(&self, seam: &SurfaceSeam, known: Option<usize>) -> SeamKind {
         let tip = seam.a.vertices.last() == seam.b.vertices.last()
             || seam.a.vertices.first() == seam.b.vertices.first();
         if seam.a.piece == seam.b.piece && tip {
@@ -201,7 +202,7 @@ impl Drawing<'_> {
 }
 
 /// For each vertex at which a step along the outer boundary begins, the number of its edge.
-fn starts(sides: &[Side]) -> BTreeMap<u32, usize> {
+fn starts(sides: &[DrawnEdge]) -> BTreeMap<u32, usize> {
     let outer = sides.iter().enumerate().filter(|(_, s)| s.of_loop == 0);
     outer.flat_map(|(k, s)| s.chain[..s.chain.len() - 1].iter().map(move |v| (*v, k))).collect()
 }
@@ -212,7 +213,7 @@ fn uses(
     chain: &Chain,
     against: bool,
     starts: &BTreeMap<u32, usize>,
-    sides: &[Side],
+    sides: &[DrawnEdge],
 ) -> Vec<Option<(usize, bool)>> {
     let mut list: Vec<Option<(usize, bool)>> = Vec::new();
     for step in chain.vertices.windows(2) {
@@ -227,7 +228,7 @@ fn uses(
 }
 
 /// Whether a step is the first of its edge.
-fn begins(edge: Option<(usize, bool)>, step: &[u32], against: bool, sides: &[Side]) -> bool {
+fn begins(edge: Option<(usize, bool)>, step: &[u32], against: bool, sides: &[DrawnEdge]) -> bool {
     let Some((k, _)) = edge else { return false };
     let chain = &sides[k].chain;
     let first = if against { chain[chain.len() - 1] } else { chain[0] };

@@ -2,10 +2,10 @@
 //! darts; pattern and garment of them.
 
 use super::dart::{Darts, dart_paths};
-use super::drawn::{CORNER, Drawing};
+use super::drawn::{CORNER, PatternDrawing};
 use super::fault::flatten_fault;
 use super::file::list;
-use super::sheet::{Labelled, Sheet};
+use super::sheet::{GarmentPieces, Labelled};
 use nalgebra::{Matrix2, Matrix3x2};
 use toile_core::prelude::*;
 use toile_flatten::FlattenError;
@@ -13,16 +13,16 @@ use toile_flatten::care::{CareOptions, CareReport, Objective, SeamLengths, mirro
 use toile_flatten::distortion::distortion;
 use toile_flatten::flatteners::{Flattening, Placement, Tension};
 use toile_flatten::grain::Grain;
-use toile_flatten::surface::Surface;
+use toile_flatten::surface::PieceSurface;
 
 /// A flattener of one piece of a garment, whose panel has this number.
-pub(super) type Method<'a> =
-    dyn Fn(&Surface, &Placement, usize) -> Result<Flattening, FlattenError> + Sync + 'a;
+pub(super) type PieceFlattener<'a> =
+    dyn Fn(&PieceSurface, &Placement, usize) -> Result<Flattening, FlattenError> + Sync + 'a;
 
 /// What is asked of a flattener.
 pub(super) struct Request<'a> {
     /// Lays one piece flat.
-    pub(super) method: &'a Method<'a>,
+    pub(super) method: &'a PieceFlattener<'a>,
     /// The energy that pattern care minimises, and what it cares for; none for a map that none
     /// belongs to.
     pub(super) care: Option<(Objective, CareOptions)>,
@@ -66,7 +66,7 @@ impl Request<'_> {
         sewn: Option<&Pattern>,
         cx: &Context,
     ) -> Result<(Pattern, Garment), StageError> {
-        let mut sheet = Sheet::of(garment)?;
+        let mut sheet = GarmentPieces::of(garment)?;
         let mut proposed = Vec::new();
         if let Some((objective, _)) = &self.care {
             let placements = self.placements(&sheet, garment);
@@ -89,7 +89,7 @@ impl Request<'_> {
         crossed(&sheet, &flats, cx);
         let flat: Vec<Vec<Point2>> = flats.into_iter().map(|f| centred(f.points)).collect();
         let name = sewn.map_or_else(|| "flat".to_owned(), |p| p.name.clone());
-        let drawing = Drawing { sheet: &sheet, flat: &flat, garment, sewn, proposed: &proposed, name };
+        let drawing = PatternDrawing { sheet: &sheet, flat: &flat, garment, sewn, proposed: &proposed, name };
         let (pattern, notes) = drawing.pattern();
         notes.into_iter().for_each(|what| cx.warn(what));
         if let Err(what) = pattern.check() {
@@ -102,7 +102,7 @@ impl Request<'_> {
     /// Each piece laid flat, the pieces in parallel.
     fn flat(
         &self,
-        sheet: &Sheet,
+        sheet: &GarmentPieces,
         placements: &[Placement],
         cx: &Context,
     ) -> Result<Vec<Flattening>, StageError> {
@@ -116,7 +116,7 @@ impl Request<'_> {
         cx.parallel_map(placements.len(), one).into_iter().collect()
     }
 
-    fn placements(&self, sheet: &Sheet, garment: &Garment) -> Vec<Placement> {
+    fn placements(&self, sheet: &GarmentPieces, garment: &Garment) -> Vec<Placement> {
         let tension = Tension { warp: self.tension.0, weft: self.tension.1 };
         let rest = sheet.rest(garment);
         let pieces = sheet.pieces.pieces.iter().zip(&rest);
@@ -125,7 +125,11 @@ impl Request<'_> {
 }
 
 /// The sheet cut along darts.
-fn cut(garment: &Garment, sheet: &Sheet, paths: &[Vec<Vec<u32>>]) -> Result<Sheet, StageError> {
+fn cut(
+    garment: &Garment,
+    sheet: &GarmentPieces,
+    paths: &[Vec<Vec<u32>>],
+) -> Result<GarmentPieces, StageError> {
     if paths.iter().all(Vec::is_empty) {
         return Ok(sheet.clone());
     }
@@ -140,7 +144,7 @@ fn cut(garment: &Garment, sheet: &Sheet, paths: &[Vec<Vec<u32>>]) -> Result<Shee
 }
 
 /// The direction in space of the cloth's warp where the flat shape is known, else the y of space.
-fn grain(surface: &Surface, rest: &[Point2]) -> Grain {
+fn grain(surface: &PieceSurface, rest: &[Point2]) -> Grain {
     let mut mean = Vector3::zeros();
     for t in surface.triangles() {
         let [a, b, c] = t.map(|v| rest[v as usize]);
@@ -182,7 +186,7 @@ fn tell(report: &CareReport, flats: &[Flattening], cx: &Context) {
 }
 
 /// Pieces that still changed when the steps ran out.
-fn unsettled(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
+fn unsettled(sheet: &GarmentPieces, flats: &[Flattening], cx: &Context) {
     let of: Vec<(&str, usize)> = sheet
         .names
         .iter()
@@ -197,7 +201,7 @@ fn unsettled(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
 }
 
 /// Pieces whose outline crosses itself in the plane.
-fn crossed(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
+fn crossed(sheet: &GarmentPieces, flats: &[Flattening], cx: &Context) {
     let crosses = |(i, flat): &(usize, &Flattening)| {
         distortion(&sheet.pieces.pieces[*i].surface, &flat.points).is_ok_and(|t| t.crossings > 0)
     };
@@ -213,7 +217,7 @@ fn crossed(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
 
 impl Care {
     /// The options of pattern care; a corner is what the drawing takes for one.
-    pub(super) fn options(&self, newton: toile_flatten::newton::NewtonOptions) -> CareOptions {
+    pub(super) fn options(&self, newton: toile_flatten::newton::StoppingLimits) -> CareOptions {
         let defaults = CareOptions::default();
         let on = |share: f64| if self.mirror { share } else { 0.0 };
         CareOptions {

@@ -5,13 +5,13 @@ use super::file::{
     Mended, NO_POINT, PiecesBy, RawMesh, cloth_of_ours, labels, leave_out, lies, list, open_cloth, read_glb,
     read_obj, wholes,
 };
-use super::sheet::{Part, assembled, unlike};
+use super::sheet::{PieceDetails, assembled, unlike};
 use std::sync::Arc;
 use toile_body::Up;
 use toile_core::prelude::*;
 use toile_drape::fabric::Preset;
 use toile_flatten::SurfaceError;
-use toile_flatten::islands::{Piece as SurfacePiece, Pieces, islands_by_labels};
+use toile_flatten::islands::{SurfacePiece, SurfacePieces, islands_by_labels};
 
 /// The unit of a garment's file.
 #[choice]
@@ -220,7 +220,7 @@ impl Garment3d {
     fn garment(
         &self,
         mended: &Mended,
-        pieces: &Pieces,
+        pieces: &SurfacePieces,
         by: PiecesBy,
         fabric: Option<&Fabric>,
     ) -> Result<Garment, StageError> {
@@ -231,9 +231,9 @@ impl Garment3d {
         let names = names(mended, pieces, by);
         let part = |(piece, name): (&SurfacePiece, String)| {
             let rest = self.rest(mended, piece, &name)?;
-            Ok(Part { name, fabric: fabric.clone(), rest, photo_px: Vec::new() })
+            Ok(PieceDetails { name, fabric: fabric.clone(), rest, photo_px: Vec::new() })
         };
-        let parts: Vec<Part> =
+        let parts: Vec<PieceDetails> =
             pieces.pieces.iter().zip(names).map(part).collect::<Result<_, StageError>>()?;
         Ok(assembled(pieces, parts))
     }
@@ -314,7 +314,7 @@ fn area([a, b, c]: [Point2; 3]) -> f64 {
 }
 
 /// Names by the group or material of most of a piece's triangles, else by number.
-fn names(mended: &Mended, pieces: &Pieces, by: PiecesBy) -> Vec<String> {
+fn names(mended: &Mended, pieces: &SurfacePieces, by: PiecesBy) -> Vec<String> {
     let mesh = &mended.mesh;
     let (of, words) = match by {
         PiecesBy::Materials => (&mesh.materials, &mesh.material_names),

@@ -10,13 +10,13 @@ use nalgebra::Matrix2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::prelude::*;
-use toile_flatten::islands::{Chain, Pieces, Seam as PieceSeam, islands_by_labels};
+use toile_flatten::islands::{Chain, SurfacePieces, SurfaceSeam, islands_by_labels};
 
 /// Pieces that know the garment that they came from.
 #[derive(Debug, Clone)]
-pub(super) struct Sheet {
+pub(super) struct GarmentPieces {
     /// The pieces; their vertices are nodes: the least of the garment's vertices that are joined.
-    pub(super) pieces: Pieces,
+    pub(super) pieces: SurfacePieces,
     /// For each piece its name, unlike all others.
     pub(super) names: Vec<String>,
     /// For each piece the garment's panel.
@@ -61,7 +61,7 @@ impl Labelled {
     }
 
     /// The pieces.
-    pub(super) fn sheet(&self, garment: &Garment) -> Result<Sheet, StageError> {
+    pub(super) fn sheet(&self, garment: &Garment) -> Result<GarmentPieces, StageError> {
         let pieces =
             islands_by_labels(&self.places, &self.nodes, &self.labels).map_err(|e| surface_fault(e, &[]))?;
         let panel_of = |t: u32| garment.panels.iter().position(|p| p.triangles.contains(&(t as usize)));
@@ -84,13 +84,13 @@ impl Labelled {
             of
         });
         let vertices = vertices.collect();
-        let mut sheet = Sheet { pieces, names, panels, vertices };
+        let mut sheet = GarmentPieces { pieces, names, panels, vertices };
         sheet.let_gathers_out(garment);
         Ok(sheet)
     }
 }
 
-impl Sheet {
+impl GarmentPieces {
     /// Triangles along gathered seams get the shape in which they were cut, strained as the
     /// gathered ones are.
     fn let_gathers_out(&mut self, garment: &Garment) {
@@ -114,11 +114,11 @@ impl Sheet {
     }
 
     /// The pieces without the seams whose sides were cut to unlike lengths.
-    pub(super) fn without_gathers(&self, garment: &Garment) -> Pieces {
+    pub(super) fn without_gathers(&self, garment: &Garment) -> SurfacePieces {
         let known = self.known_seams(garment);
         let is_even = |k: &Option<usize>| k.is_none_or(|k| garment.seams[k].kind != SeamKind::Gathered);
         let even = self.pieces.seams.iter().zip(&known).filter(|(_, k)| is_even(k));
-        Pieces { pieces: self.pieces.pieces.clone(), seams: even.map(|(s, _)| s.clone()).collect() }
+        SurfacePieces { pieces: self.pieces.pieces.clone(), seams: even.map(|(s, _)| s.clone()).collect() }
     }
 
     /// The sheet of a garment as it was cut.
@@ -138,7 +138,7 @@ impl Sheet {
             let pixel =
                 |v: &u32| panel.photo_px.get((*v as usize).wrapping_sub(panel.vertices.start)).copied();
             let photo_px: Option<Vec<Point2>> = self.vertices[i].iter().map(pixel).collect();
-            Part {
+            PieceDetails {
                 name: self.names[i].clone(),
                 fabric: panel.fabric.clone(),
                 rest: flat[i].clone(),
@@ -159,7 +159,7 @@ impl Sheet {
 
     /// Seams of the garment that it came from keep their names and kinds.
     fn name_seams(&self, from: &Garment, garment: &mut Garment) {
-        let known = Known::of(from);
+        let known = SeamTable::of(from);
         for (seam, made) in self.pieces.seams.iter().zip(&mut garment.seams) {
             if let Some(k) = known.of_seam(self, seam) {
                 made.name.clone_from(&from.seams[k].name);
@@ -170,22 +170,22 @@ impl Sheet {
 
     /// For each seam of the pieces the garment's seam that it is a part of.
     pub(super) fn known_seams(&self, from: &Garment) -> Vec<Option<usize>> {
-        let known = Known::of(from);
+        let known = SeamTable::of(from);
         self.pieces.seams.iter().map(|s| known.of_seam(self, s)).collect()
     }
 }
 
 /// Which seams of a garment join two of its vertices.
-struct Known(BTreeMap<[u32; 2], usize>);
+struct SeamTable(BTreeMap<[u32; 2], usize>);
 
-impl Known {
+impl SeamTable {
     fn of(garment: &Garment) -> Self {
         let pairs = garment.seams.iter().enumerate();
         Self(pairs.flat_map(|(k, s)| s.pairs.iter().map(move |p| (sorted(*p), k))).collect())
     }
 
     /// The seam that joins most of the vertices; the first of equals.
-    fn of_seam(&self, sheet: &Sheet, seam: &PieceSeam) -> Option<usize> {
+    fn of_seam(&self, sheet: &GarmentPieces, seam: &SurfaceSeam) -> Option<usize> {
         let vertex = |c: &Chain, i: usize| sheet.vertices[c.piece][c.vertices[i] as usize];
         let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
         for i in 0..seam.a.vertices.len().min(seam.b.vertices.len()) {
@@ -229,7 +229,7 @@ pub(super) fn unlike<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Vec<St
 }
 
 /// What a piece is beside its mesh.
-pub(super) struct Part {
+pub(super) struct PieceDetails {
     pub(super) name: String,
     pub(super) fabric: Arc<Fabric>,
     /// A flat place a vertex.
@@ -239,7 +239,7 @@ pub(super) struct Part {
 }
 
 /// A garment at rest of pieces; vertices that stand for one are joined, and every seam is closed.
-pub(super) fn assembled(pieces: &Pieces, parts: Vec<Part>) -> Garment {
+pub(super) fn assembled(pieces: &SurfacePieces, parts: Vec<PieceDetails>) -> Garment {
     let (mut positions, mut rest, mut triangles, mut panels) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut first_of: BTreeMap<u32, u32> = BTreeMap::new();
@@ -266,7 +266,7 @@ pub(super) fn assembled(pieces: &Pieces, parts: Vec<Part>) -> Garment {
             fabric: part.fabric,
         });
     }
-    let seam = |s: &PieceSeam| GarmentSeam {
+    let seam = |s: &SurfaceSeam| GarmentSeam {
         name: format!("{} + {}", names[s.a.piece], names[s.b.piece]),
         kind: SeamKind::Matched,
         pairs: pairs(s, &starts),
@@ -288,7 +288,7 @@ pub(super) fn assembled(pieces: &Pieces, parts: Vec<Part>) -> Garment {
     }
 }
 
-fn pairs(seam: &PieceSeam, starts: &[u32]) -> Vec<[u32; 2]> {
+fn pairs(seam: &SurfaceSeam, starts: &[u32]) -> Vec<[u32; 2]> {
     let at = |c: &Chain, v: u32| v + starts[c.piece];
     let both = seam.a.vertices.iter().zip(&seam.b.vertices);
     both.map(|(&a, &b)| [at(&seam.a, a), at(&seam.b, b)]).collect()

@@ -4,7 +4,7 @@ use super::flattened::{Care, Request};
 use toile_core::prelude::*;
 use toile_flatten::care::Objective;
 use toile_flatten::flatteners::springs;
-use toile_flatten::newton::NewtonOptions;
+use toile_flatten::newton::StoppingLimits;
 
 /// Lays each piece flat by the distances between neighbours, then lets springs along the edges
 /// relax in the plane.
@@ -41,7 +41,7 @@ impl SpringFlatten {
         pattern: Option<&Pattern>,
         cx: &Context,
     ) -> Result<(Pattern, Garment), StageError> {
-        let newton = NewtonOptions { iterations: self.iterations as usize, tolerance: self.settled };
+        let newton = StoppingLimits { iterations: self.iterations as usize, tolerance: self.settled };
         let request = Request {
             method: &|surface, placement, _| springs(surface, newton, placement),
             care: Some((Objective::Springs, self.care.options(newton))),

@@ -3,9 +3,9 @@
 //! Blue: the cloth is shorter on the garment than in the plane; red: longer; by the principal
 //! strain of larger absolute value.
 
-use super::sheet::Sheet;
+use super::sheet::GarmentPieces;
 use crate::render::parts::plain_cloth;
-use crate::render::{Form, Scene, View, jpeg};
+use crate::render::{ModelScene, PictureForm, View, jpeg};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ const LEGEND: f64 = 0.06;
 
 /// The drawing.
 pub(super) fn drawn(
-    sheet: &Sheet,
+    sheet: &GarmentPieces,
     flat: &[Vec<Point2>],
     judged: &[Distortion],
     garment: &Garment,
@@ -60,7 +60,7 @@ pub(super) fn drawn(
 /// A piece's triangles, one path a colour, and its outline.
 fn piece(
     body: &mut String,
-    sheet: &Sheet,
+    sheet: &GarmentPieces,
     i: usize,
     points: &[Point2],
     d: &Distortion,
@@ -134,17 +134,17 @@ fn legend(body: &mut String, height: f64, full: f64) {
 /// The garment from the front and the back in the same colours: caption, picture, and its width
 /// over its height.
 fn views(
-    sheet: &Sheet,
+    sheet: &GarmentPieces,
     garment: &Garment,
     judged: &[Distortion],
     full: f64,
 ) -> Vec<(&'static str, String, f64)> {
     let model = model(sheet, garment, judged, full);
-    let scene = Scene::draft(&model);
+    let scene = ModelScene::draft(&model);
     let view = |(caption, view): (&'static str, View)| {
         let picture = scene.render(&view);
         let share = f64::from(picture.width()) / f64::from(picture.height().max(1));
-        let Some(Form::Jpeg(bytes)) = jpeg(&picture) else { return None };
+        let Some(PictureForm::Jpeg(bytes)) = jpeg(&picture) else { return None };
         Some((caption, format!("data:image/jpeg;base64,{}", STANDARD.encode(bytes)), share))
     };
     [("from the front", View::front(VIEW)), ("from behind", View::back(VIEW))]
@@ -154,7 +154,7 @@ fn views(
 }
 
 /// One mesh a colour.
-fn model(sheet: &Sheet, garment: &Garment, judged: &[Distortion], full: f64) -> Model {
+fn model(sheet: &GarmentPieces, garment: &Garment, judged: &[Distortion], full: f64) -> Model {
     let mut by_step: BTreeMap<i32, Vec<[u32; 3]>> = BTreeMap::new();
     for (piece, d) in sheet.pieces.pieces.iter().zip(judged) {
         for (&t, strain) in piece.triangles.iter().zip(&d.triangles) {

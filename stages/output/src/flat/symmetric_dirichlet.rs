@@ -4,7 +4,7 @@ use super::flattened::{Care, Request};
 use toile_core::prelude::*;
 use toile_flatten::care::Objective;
 use toile_flatten::flatteners::symmetric_dirichlet;
-use toile_flatten::newton::NewtonOptions;
+use toile_flatten::newton::StoppingLimits;
 
 /// Lays each piece flat so that stretching and shrinking cost alike and without limit: the worst
 /// triangles come out better than with `Arap`.
@@ -36,7 +36,7 @@ impl SymmetricDirichlet {
         pattern: Option<&Pattern>,
         cx: &Context,
     ) -> Result<(Pattern, Garment), StageError> {
-        let newton = NewtonOptions { iterations: self.iterations as usize, ..NewtonOptions::default() };
+        let newton = StoppingLimits { iterations: self.iterations as usize, ..StoppingLimits::default() };
         let request = Request {
             method: &|surface, placement, _| symmetric_dirichlet(surface, newton, placement),
             care: Some((Objective::SymmetricDirichlet, self.care.options(newton))),

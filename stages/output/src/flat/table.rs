@@ -1,13 +1,13 @@
 //! `FlatTable`: how true a flattening is.
 
 use super::overlay::outline_distance;
-use super::sheet::Sheet;
+use super::sheet::GarmentPieces;
 use super::strain_svg;
 use crate::file_names::check_name;
 use rayon::prelude::*;
 use serde::Serialize;
 use toile_core::prelude::*;
-use toile_flatten::distortion::{Distortion, Spread, distortion};
+use toile_flatten::distortion::{Distortion, StrainSpread, distortion};
 
 /// Writes how far the flat pieces are from the garment, in both directions, and draws them coloured
 /// by strain.
@@ -43,10 +43,10 @@ impl FlatTable {
         cx: &Context,
     ) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
-        let sheet = Sheet::of(garment)?;
+        let sheet = GarmentPieces::of(garment)?;
         let flat = sheet.rest(garment);
         let judged = judged(&sheet, &flat)?;
-        let table = Table {
+        let table = TableContents {
             garment: pattern.map_or_else(String::new, |p| p.name.clone()),
             pieces: pieces(&sheet, &flat, &judged, &Truth::of(sewn), pattern),
             seams: pattern.map_or_else(Vec::new, seams),
@@ -67,7 +67,7 @@ impl FlatTable {
 }
 
 /// The distortion of each piece.
-fn judged(sheet: &Sheet, flat: &[Vec<Point2>]) -> Result<Vec<Distortion>, StageError> {
+fn judged(sheet: &GarmentPieces, flat: &[Vec<Point2>]) -> Result<Vec<Distortion>, StageError> {
     let one = |(i, flat): (usize, &Vec<Point2>)| {
         let name = &sheet.names[i];
         let unknown = || {
@@ -85,7 +85,7 @@ fn judged(sheet: &Sheet, flat: &[Vec<Point2>]) -> Result<Vec<Distortion>, StageE
 
 /// What is written.
 #[derive(Debug, Serialize)]
-struct Table {
+struct TableContents {
     garment: String,
     pieces: Vec<PieceRow>,
     seams: Vec<SeamRow>,
@@ -140,7 +140,7 @@ struct SpreadRow {
 }
 
 impl SpreadRow {
-    fn of(s: Spread) -> Self {
+    fn of(s: StrainSpread) -> Self {
         Self { signed_mean: s.signed_mean, mean: s.mean, p99: s.p99, max: s.max }
     }
 }
@@ -174,7 +174,7 @@ struct SeamRow {
     mismatch: f64,
 }
 
-impl Table {
+impl TableContents {
     /// The worst of the table, as figures of the run.
     fn tell(&self, cx: &Context) {
         let worst =
@@ -193,7 +193,7 @@ impl Table {
 }
 
 fn pieces(
-    sheet: &Sheet,
+    sheet: &GarmentPieces,
     flat: &[Vec<Point2>],
     judged: &[Distortion],
     truth: &Truth,
@@ -247,12 +247,12 @@ fn seams(pattern: &Pattern) -> Vec<SeamRow> {
 }
 
 /// The pieces as they were cut, where the garment knew them before it was flattened.
-struct Truth(Option<(Sheet, Vec<Vec<Point2>>)>);
+struct Truth(Option<(GarmentPieces, Vec<Vec<Point2>>)>);
 
 impl Truth {
     fn of(sewn: Option<&Garment>) -> Self {
         let known = sewn.and_then(|g| {
-            let sheet = Sheet::of(g).ok()?;
+            let sheet = GarmentPieces::of(g).ok()?;
             let rest = sheet.rest(g);
             Some((sheet, rest))
         });
@@ -262,7 +262,7 @@ impl Truth {
     fn row(
         &self,
         name: &str,
-        flat_sheet: &Sheet,
+        flat_sheet: &GarmentPieces,
         i: usize,
         flat: &[Point2],
         d: &Distortion,
@@ -271,7 +271,7 @@ impl Truth {
         let k = sheet.names.iter().position(|n| n == name)?;
         let surface = &sheet.pieces.pieces[k].surface;
         let truth = distortion(surface, &rest[k]).ok().filter(|t| t.area_2d > 0.0)?;
-        let outer = |sheet: &Sheet, i: usize, places: &[Point2]| {
+        let outer = |sheet: &GarmentPieces, i: usize, places: &[Point2]| {
             let l = sheet.pieces.pieces[i].surface.loops().first().map_or(&[][..], Vec::as_slice);
             l.iter().map(|&v| places[v as usize]).collect::<Vec<_>>()
         };

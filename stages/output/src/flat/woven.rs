@@ -5,7 +5,7 @@ use toile_core::prelude::*;
 use toile_flatten::care::Objective;
 use toile_flatten::energy::WovenStiffness;
 use toile_flatten::flatteners::woven;
-use toile_flatten::newton::NewtonOptions;
+use toile_flatten::newton::StoppingLimits;
 
 /// Lays each piece flat as its fabric would: warp and weft keep their lengths by the fabric's own
 /// curves, shear gives way.
@@ -43,7 +43,7 @@ impl Woven {
         pattern: Option<&Pattern>,
         cx: &Context,
     ) -> Result<(Pattern, Garment), StageError> {
-        let newton = NewtonOptions { iterations: self.iterations as usize, ..NewtonOptions::default() };
+        let newton = StoppingLimits { iterations: self.iterations as usize, ..StoppingLimits::default() };
         let stiffness: Vec<WovenStiffness> =
             garment.panels.iter().map(|p| self.stiffness(&p.fabric)).collect();
         let first = stiffness.first().copied().unwrap_or(WovenStiffness::COTTON);

@@ -15,7 +15,7 @@ pub(super) const REACH_PX: f64 = 1e6;
 
 /// A triangle ready to be scanned.
 #[derive(Debug, Clone)]
-pub(super) struct Patch {
+pub(super) struct CoveredTriangle {
     /// Corners in sub-pixel steps, turned so that their area is positive.
     corners: [[i64; 2]; 3],
     /// Where each corner stood in the original order.
@@ -26,9 +26,9 @@ pub(super) struct Patch {
     near: [f64; 3],
 }
 
-impl Patch {
+impl CoveredTriangle {
     /// `None` for a triangle without area, not finite, or out of reach.
-    pub(super) fn new(v: [Projected; 3]) -> Option<Patch> {
+    pub(super) fn new(v: [Projected; 3]) -> Option<CoveredTriangle> {
         let ok = |p: &Projected| p.x.abs() < REACH_PX && p.y.abs() < REACH_PX && p.near.is_finite();
         if !v.iter().all(ok) {
             return None;
@@ -37,7 +37,7 @@ impl Patch {
         let corners = v.each_ref().map(snap);
         let area = edge(corners[0], corners[1], corners[2]);
         let order = if area < 0 { [0, 2, 1] } else { [0, 1, 2] };
-        (area != 0).then(|| Patch {
+        (area != 0).then(|| CoveredTriangle {
             corners: order.map(|k| corners[k]),
             order,
             area: area.abs(),

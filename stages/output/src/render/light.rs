@@ -10,7 +10,7 @@
 //! Limits: light varies linearly over a triangle; details below [`MAP_PX`]'s resolution are lost.
 
 use super::camera::Projected;
-use super::cover::{Patch, below};
+use super::cover::{CoveredTriangle, below};
 use rayon::prelude::*;
 use toile_core::Cancel;
 use toile_core::artifact::{Mesh, Model, Point3, Vector3};
@@ -50,15 +50,15 @@ const NADIR: f64 = 0.45;
 
 /// The garment's neighbourhood in which shadows are looked for.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Region {
+pub(super) struct ShadowRegion {
     centre: Point3,
     radius: f64,
 }
 
-impl Region {
+impl ShadowRegion {
     /// Around a model's framed part: least and greatest corner.
-    pub(super) fn new(lo: Point3, hi: Point3) -> Region {
-        Region { centre: nalgebra::center(&lo, &hi), radius: (hi - lo).norm() / 2.0 + REACH }
+    pub(super) fn new(lo: Point3, hi: Point3) -> ShadowRegion {
+        ShadowRegion { centre: nalgebra::center(&lo, &hi), radius: (hi - lo).norm() / 2.0 + REACH }
     }
 }
 
@@ -71,7 +71,7 @@ pub(super) fn studio(d: &Vector3) -> f64 {
 /// from each direction; once it is to stop, what has been gathered.
 pub(super) fn ambient(
     model: &Model,
-    region: Region,
+    region: ShadowRegion,
     fineness: Fineness,
     sky: impl Fn(&Vector3) -> f64 + Sync,
     stop: &Cancel,
@@ -90,7 +90,7 @@ pub(super) fn ambient(
 /// once it is to stop, what has been gathered.
 pub(super) fn soft_box(
     model: &Model,
-    region: Region,
+    region: ShadowRegion,
     towards: Vector3,
     fineness: Fineness,
     stop: &Cancel,
@@ -112,10 +112,10 @@ type PerVertex<T> = Vec<Vec<T>>;
 /// it is to stop.
 fn gather<const N: usize>(
     model: &Model,
-    region: Region,
+    region: ShadowRegion,
     directions: &[Vector3],
     stop: &Cancel,
-    light: impl Fn(&DepthMap, Point3, Vector3) -> [f64; N] + Sync,
+    light: impl Fn(&ShadowMap, Point3, Vector3) -> [f64; N] + Sync,
 ) -> PerVertex<[f64; N]> {
     let triangles = near_triangles(model, region);
     let zero = || -> PerVertex<[f64; N]> {
@@ -124,7 +124,7 @@ fn gather<const N: usize>(
     let task = |directions: &[Vector3]| {
         let mut sums = zero();
         for direction in directions.iter().take_while(|_| !stop.is_cancelled()) {
-            let map = DepthMap::new(model, &triangles, region, *direction);
+            let map = ShadowMap::new(model, &triangles, region, *direction);
             for (mesh, sums) in model.meshes.iter().zip(&mut sums) {
                 for ((p, n), sum) in mesh.positions.iter().zip(&mesh.normals).zip(sums) {
                     add(sum, &light(&map, *p, *n));
@@ -150,7 +150,7 @@ fn each_vertex<A, B>(sums: PerVertex<A>, f: impl Fn(A) -> B + Copy) -> PerVertex
 }
 
 /// The triangles of each mesh that can cast a shadow in the region.
-fn near_triangles(model: &Model, region: Region) -> PerVertex<[usize; 3]> {
+fn near_triangles(model: &Model, region: ShadowRegion) -> PerVertex<[usize; 3]> {
     let mesh = |m: &Mesh| {
         let near: Vec<bool> =
             m.positions.iter().map(|p| (p - region.centre).norm() <= region.radius).collect();
@@ -195,7 +195,7 @@ fn tangents(n: Vector3) -> (Vector3, Vector3) {
 }
 
 /// What a distant light sees: for every pixel the height of the nearest surface towards it.
-struct DepthMap {
+struct ShadowMap {
     towards: Vector3,
     u: Vector3,
     v: Vector3,
@@ -204,18 +204,23 @@ struct DepthMap {
     nearest: Vec<f32>,
 }
 
-impl DepthMap {
-    fn new(model: &Model, triangles: &[Vec<[usize; 3]>], region: Region, towards: Vector3) -> DepthMap {
+impl ShadowMap {
+    fn new(
+        model: &Model,
+        triangles: &[Vec<[usize; 3]>],
+        region: ShadowRegion,
+        towards: Vector3,
+    ) -> ShadowMap {
         let (u, v) = tangents(towards);
         let scale = MAP_PX as f64 / (2.0 * region.radius);
         let nearest = vec![f32::NEG_INFINITY; MAP_PX * MAP_PX];
-        let mut map = DepthMap { towards, u, v, centre: region.centre, scale, nearest };
+        let mut map = ShadowMap { towards, u, v, centre: region.centre, scale, nearest };
         for (mesh, triangles) in model.meshes.iter().zip(triangles) {
             // What is closed hides its far side by its near side, so half of its triangles will do.
             let closed = model.materials.get(mesh.material).is_some_and(|m| !m.double_sided);
             let placed: Vec<Projected> = mesh.positions.iter().map(|p| map.place(p)).collect();
             for t in triangles {
-                let Some(patch) = Patch::new(t.map(|i| placed[i])) else { continue };
+                let Some(patch) = CoveredTriangle::new(t.map(|i| placed[i])) else { continue };
                 let turned_away = patch.order == [0, 2, 1];
                 if !(closed && turned_away) {
                     map.draw(&patch);
@@ -225,7 +230,7 @@ impl DepthMap {
         map
     }
 
-    fn draw(&mut self, patch: &Patch) {
+    fn draw(&mut self, patch: &CoveredTriangle) {
         let side = MAP_PX as i64;
         let half = super::cover::STEPS / 2;
         patch.scan(side, 0..side, &[[half, half]], |_, x, y, near| {

@@ -38,7 +38,7 @@ pub(crate) fn encode(linear: f32) -> u8 {
 
 /// A texture and its reductions.
 #[derive(Debug)]
-pub(crate) struct Mips(Vec<Level>);
+pub(crate) struct Mips(Vec<MipLevel>);
 
 /// A share of 255 as it stands, which is how a normal map is read.
 static SHARES: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| i as f32 / 255.0));
@@ -124,7 +124,7 @@ impl Footprint {
 }
 
 #[derive(Debug)]
-struct Level {
+struct MipLevel {
     width: usize,
     height: usize,
     texels: Vec<[u8; 3]>,
@@ -147,9 +147,14 @@ impl Mips {
     fn coded(texture: &Texture, coding: Coding) -> Mips {
         let (w, h) = texture.pixels.dimensions();
         let texels = texture.pixels.pixels().map(|p| p.0).collect();
-        let mut levels =
-            vec![Level { width: w as usize, height: h as usize, texels, repeats: texture.repeats, coding }];
-        while let Some(next) = levels.last().and_then(Level::halved) {
+        let mut levels = vec![MipLevel {
+            width: w as usize,
+            height: h as usize,
+            texels,
+            repeats: texture.repeats,
+            coding,
+        }];
+        while let Some(next) = levels.last().and_then(MipLevel::halved) {
             levels.push(next);
         }
         Mips(levels)
@@ -167,8 +172,8 @@ impl Mips {
     }
 }
 
-impl Level {
-    fn halved(&self) -> Option<Level> {
+impl MipLevel {
+    fn halved(&self) -> Option<MipLevel> {
         if self.width <= 1 && self.height <= 1 || self.texels.is_empty() {
             return None;
         }
@@ -187,7 +192,7 @@ impl Level {
                 );
             }
         }
-        Some(Level { width, height, texels, repeats: self.repeats, coding: self.coding })
+        Some(MipLevel { width, height, texels, repeats: self.repeats, coding: self.coding })
     }
 
     /// The four texels around a lookup.

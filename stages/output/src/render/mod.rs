@@ -1,7 +1,7 @@
 //! Pictures of models without a window or a graphics card.
 //!
 //! A z-buffer rasteriser with four samples a pixel, mip-mapped textures and a soft studio light
-//! whose shadows come from depth maps. [`render`] makes one picture; a [`Scene`] prepared once
+//! whose shadows come from depth maps. [`render`] makes one picture; a [`ModelScene`] prepared once
 //! makes several of the same model, which saves the part of the light that no view changes.
 //!
 //! Every picture is the same to the last bit for any number of threads: rows are shared out in
@@ -26,10 +26,10 @@ mod tests;
 pub use camera::{Frame, View};
 pub(crate) use mips::{Coding, LINEAR, Mips, encode};
 pub use orbit::Orbit;
-pub use overlay::Line;
-pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
+pub use overlay::OverlayLine;
+pub use pictures::{ArtifactPicture, PANEL_COLOURS, PictureForm, garment_model, pictures_of};
 pub(crate) use pictures::{escaped, jpeg, thumbnail};
-pub use scene::Scene;
+pub use scene::ModelScene;
 pub use surroundings::Surroundings;
 
 use image::RgbImage;
@@ -43,5 +43,5 @@ const BODY: &str = "body";
 /// An empty model gives the bare background; triangles that are degenerate or not finite are left
 /// out.
 pub fn render(model: &Model, view: &View) -> RgbImage {
-    Scene::new(model).render(view)
+    ModelScene::new(model).render(view)
 }

@@ -6,7 +6,7 @@ use toile_core::artifact::Point3;
 
 /// A straight line in space, drawn over everything.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
+pub struct OverlayLine {
     /// Its ends, metres. Equal ends give a dot.
     pub ends: [Point3; 2],
     /// Its colour, sRGB.
@@ -16,7 +16,7 @@ pub struct Line {
 }
 
 /// Draws lines with soft edges.
-pub(super) fn draw(picture: &mut RgbImage, camera: &Camera, lines: &[Line]) {
+pub(super) fn draw(picture: &mut RgbImage, camera: &Camera, lines: &[OverlayLine]) {
     for line in lines {
         let ends = line.ends.each_ref().map(|p| camera.project(p));
         let reach = super::cover::REACH_PX;
@@ -26,7 +26,7 @@ pub(super) fn draw(picture: &mut RgbImage, camera: &Camera, lines: &[Line]) {
     }
 }
 
-fn stroke(picture: &mut RgbImage, [a, b]: [Projected; 2], line: &Line) {
+fn stroke(picture: &mut RgbImage, [a, b]: [Projected; 2], line: &OverlayLine) {
     let half = line.width / 2.0 + 0.5;
     let limit = |v: f64, n: u32| v.clamp(0.0, f64::from(n)) as u32;
     let (w, h) = picture.dimensions();

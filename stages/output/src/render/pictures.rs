@@ -2,7 +2,7 @@
 //!
 //! Photos and masks as thumbnails, outlines and panels as drawings, the rest rendered.
 
-use super::{Frame, Line, Scene, View};
+use super::{Frame, ModelScene, OverlayLine, View};
 use crate::render::parts::{body_mesh, mannequin, panel_mesh, plain_cloth};
 use image::codecs::jpeg::JpegEncoder;
 use image::{GrayImage, ImageFormat, RgbImage, imageops};
@@ -16,7 +16,7 @@ use toile_core::artifact::{
 
 /// The form of a finished picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Form {
+pub enum PictureForm {
     /// A PNG file.
     Png(Vec<u8>),
     /// A JPEG file.
@@ -27,11 +27,11 @@ pub enum Form {
 
 /// A picture of an artifact.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Picture {
+pub struct ArtifactPicture {
     /// What it shows: `front`, `from behind`.
     pub caption: String,
     /// The picture.
-    pub form: Form,
+    pub form: PictureForm,
 }
 
 /// Colours of panels and edges, sRGB; used in turn.
@@ -51,10 +51,10 @@ const MOST_TRIANGLES_DRAWN: usize = 12_000;
 
 /// Pictures of an artifact, about `height` px high; none for kinds without a look. `body` stands
 /// behind garments.
-pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) -> Vec<Picture> {
+pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) -> Vec<ArtifactPicture> {
     let any: &dyn Any = artifact;
-    let picture = |caption: &str, form: Option<Form>| {
-        form.map(|form| Picture { caption: caption.to_owned(), form }).into_iter().collect::<Vec<_>>()
+    let picture = |caption: &str, form: Option<PictureForm>| {
+        form.map(|form| ArtifactPicture { caption: caption.to_owned(), form }).into_iter().collect::<Vec<_>>()
     };
     if let Some(photo) = any.downcast_ref::<Photo>() {
         picture("", jpeg(&thumbnail(&photo.pixels, height)))
@@ -62,15 +62,15 @@ pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) ->
         picture("", png(&grey_thumbnail(&mask.pixels, height)))
     } else if let Some(outline) = any.downcast_ref::<Outline>() {
         let svg = outline.export().into_iter().find(|(kind, _)| *kind == "svg");
-        picture("", svg.and_then(|(_, bytes)| String::from_utf8(bytes).ok()).map(Form::Svg))
+        picture("", svg.and_then(|(_, bytes)| String::from_utf8(bytes).ok()).map(PictureForm::Svg))
     } else if let Some(panel) = any.downcast_ref::<Panel>() {
-        picture("", Some(Form::Svg(panel_svg(panel))))
+        picture("", Some(PictureForm::Svg(panel_svg(panel))))
     } else if let Some(body) = any.downcast_ref::<Body>() {
         body_pictures(body, height)
     } else if let Some(garment) = any.downcast_ref::<Garment>() {
         garment_pictures(garment, body, height)
     } else if let Some(model) = any.downcast_ref::<Model>() {
-        shots(&Scene::sketch(model), &[], height)
+        shots(&ModelScene::sketch(model), &[], height)
     } else if let Some(files) = any.downcast_ref::<OutputFiles>() {
         drawings(files)
     } else {
@@ -79,25 +79,25 @@ pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) ->
 }
 
 /// The drawings among files.
-fn drawings(files: &OutputFiles) -> Vec<Picture> {
+fn drawings(files: &OutputFiles) -> Vec<ArtifactPicture> {
     let small = files.0.iter().filter(|f| f.path.ends_with(".svg") && f.bytes.len() <= LARGEST_DRAWING);
     let drawing = |f: &OutputFile| {
         let text = String::from_utf8(f.bytes.clone()).ok()?;
-        Some(Picture { caption: f.path.clone(), form: Form::Svg(text) })
+        Some(ArtifactPicture { caption: f.path.clone(), form: PictureForm::Svg(text) })
     };
     small.filter_map(drawing).collect()
 }
 
 /// A picture as JPEG; `None` for one without pixels.
-pub(crate) fn jpeg(picture: &RgbImage) -> Option<Form> {
+pub(crate) fn jpeg(picture: &RgbImage) -> Option<PictureForm> {
     let mut bytes = Vec::new();
     let encoder = JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY);
-    picture.write_with_encoder(encoder).ok().map(|()| Form::Jpeg(bytes))
+    picture.write_with_encoder(encoder).ok().map(|()| PictureForm::Jpeg(bytes))
 }
 
-fn png(picture: &GrayImage) -> Option<Form> {
+fn png(picture: &GrayImage) -> Option<PictureForm> {
     let mut bytes = Cursor::new(Vec::new());
-    picture.write_to(&mut bytes, ImageFormat::Png).ok().map(|()| Form::Png(bytes.into_inner()))
+    picture.write_to(&mut bytes, ImageFormat::Png).ok().map(|()| PictureForm::Png(bytes.into_inner()))
 }
 
 /// The size of a picture brought down to `height`.
@@ -121,15 +121,19 @@ fn grey_thumbnail(picture: &GrayImage, height: u32) -> GrayImage {
     imageops::thumbnail(picture, w, h)
 }
 
-fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
+fn body_pictures(body: &Body, height: u32) -> Vec<ArtifactPicture> {
     let model = Model { meshes: vec![body_mesh(body, 0)], materials: vec![mannequin()], ..Model::default() };
-    let dot = |p: &toile_core::artifact::Point3| Line { ends: [*p, *p], colour: LANDMARK_COLOUR, width: 5.0 };
-    let dots: Vec<Line> = body.landmarks.values().map(dot).collect();
-    let scene = Scene::sketch(&model);
+    let dot = |p: &toile_core::artifact::Point3| OverlayLine {
+        ends: [*p, *p],
+        colour: LANDMARK_COLOUR,
+        width: 5.0,
+    };
+    let dots: Vec<OverlayLine> = body.landmarks.values().map(dot).collect();
+    let scene = ModelScene::sketch(&model);
     let whole = |view: View| View { frame: Frame::Whole, margin: 0.04, ..view };
     let shot = |caption: &str, view: View| {
         let form = jpeg(&scene.render_with(&whole(view), &dots))?;
-        Some(Picture { caption: caption.to_owned(), form })
+        Some(ArtifactPicture { caption: caption.to_owned(), form })
     };
     [shot("front", View::front(height)), shot("left side", View::side(height))]
         .into_iter()
@@ -137,16 +141,16 @@ fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
         .collect()
 }
 
-fn garment_pictures(garment: &Garment, body: Option<&Body>, height: u32) -> Vec<Picture> {
+fn garment_pictures(garment: &Garment, body: Option<&Body>, height: u32) -> Vec<ArtifactPicture> {
     let model = garment_model(garment, body);
-    shots(&Scene::sketch(&model), &open_seams(garment), height)
+    shots(&ModelScene::sketch(&model), &open_seams(garment), height)
 }
 
 /// Front and back.
-fn shots(scene: &Scene, lines: &[Line], height: u32) -> Vec<Picture> {
+fn shots(scene: &ModelScene, lines: &[OverlayLine], height: u32) -> Vec<ArtifactPicture> {
     let shot = |(caption, view): (&str, View)| {
         let form = jpeg(&scene.render_with(&view, lines))?;
-        Some(Picture { caption: caption.to_owned(), form })
+        Some(ArtifactPicture { caption: caption.to_owned(), form })
     };
     [("front", View::front(height)), ("back", View::back(height))].into_iter().filter_map(shot).collect()
 }
@@ -172,12 +176,12 @@ fn push(model: &mut Model, mesh: Mesh, material: Material) {
 }
 
 /// The pairs of every seam that is still open.
-fn open_seams(garment: &Garment) -> Vec<Line> {
+fn open_seams(garment: &Garment) -> Vec<OverlayLine> {
     let open = garment.seams.iter().filter(|s| s.state == SeamState::Open);
     let line = |pair: &[u32; 2]| {
         let ends = pair.map(|i| garment.positions.get(i as usize).copied());
         let [Some(a), Some(b)] = ends else { return None };
-        Some(Line { ends: [a, b], colour: SEAM_COLOUR, width: 1.0 })
+        Some(OverlayLine { ends: [a, b], colour: SEAM_COLOUR, width: 1.0 })
     };
     open.flat_map(|s| &s.pairs).filter_map(line).collect()
 }

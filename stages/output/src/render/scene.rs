@@ -5,13 +5,13 @@
 //! smoothed at a quarter of the cost of colouring every sample.
 
 use super::camera::{Camera, Projected, View};
-use super::cover::{Patch, STEPS};
-use super::light::{self, Fineness, Region};
+use super::cover::{CoveredTriangle, STEPS};
+use super::light::{self, Fineness, ShadowRegion};
 use super::mips::{Footprint, Mips, encode};
 use super::remember::Remember;
 use super::shade::{Lights, wall};
 use super::surroundings::Surroundings;
-use super::{Line, Orbit, overlay};
+use super::{Orbit, OverlayLine, overlay};
 use crate::render::tangents::{Tangent, tangents};
 use image::{RgbImage, RgbaImage};
 use nalgebra::Matrix2;
@@ -30,12 +30,12 @@ const NONE: u32 = u32::MAX;
 
 /// A model with its textures reduced and its ambient light found.
 #[derive(Debug)]
-pub struct Scene<'a> {
+pub struct ModelScene<'a> {
     model: &'a Model,
     textures: Vec<Mips>,
     /// Of meshes with a normal map; empty for the others.
     tangents: Vec<Vec<Tangent>>,
-    region: Region,
+    region: ShadowRegion,
     fineness: Fineness,
     ambient: Vec<Vec<[f32; 2]>>,
     remember: Option<Remember<'a>>,
@@ -43,28 +43,28 @@ pub struct Scene<'a> {
     stop: Cancel,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> ModelScene<'a> {
     /// Prepares a model.
-    pub fn new(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::FINE, None)
+    pub fn new(model: &'a Model) -> ModelScene<'a> {
+        ModelScene::prepare(model, light::FINE, None)
     }
 
     /// Prepares a model with coarser light, almost three times as fast: on a dressed body it
     /// differs by 52 dB (PSNR).
-    pub fn draft(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::DRAFT, None)
+    pub fn draft(model: &'a Model) -> ModelScene<'a> {
+        ModelScene::prepare(model, light::DRAFT, None)
     }
 
     /// Prepares a model for thumbnails: twice as fast again.
-    pub fn sketch(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::SKETCH, None)
+    pub fn sketch(model: &'a Model) -> ModelScene<'a> {
+        ModelScene::prepare(model, light::SKETCH, None)
     }
 
     /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
     ///
     /// Errors: that of a stop.
-    pub fn draft_in(model: &'a Model, cx: &'a Context) -> Result<Scene<'a>, StageError> {
-        Scene::draft_within(model, None, cx)
+    pub fn draft_in(model: &'a Model, cx: &'a Context) -> Result<ModelScene<'a>, StageError> {
+        ModelScene::draft_within(model, None, cx)
     }
 
     /// The same in the light of a panorama, where one is given.
@@ -72,8 +72,8 @@ impl<'a> Scene<'a> {
         model: &'a Model,
         surroundings: Option<Surroundings>,
         cx: &'a Context,
-    ) -> Result<Scene<'a>, StageError> {
-        Scene::prepare_in(model, light::DRAFT, surroundings, cx)
+    ) -> Result<ModelScene<'a>, StageError> {
+        ModelScene::prepare_in(model, light::DRAFT, surroundings, cx)
     }
 
     fn prepare_in(
@@ -81,8 +81,8 @@ impl<'a> Scene<'a> {
         fineness: Fineness,
         surroundings: Option<Surroundings>,
         cx: &'a Context,
-    ) -> Result<Scene<'a>, StageError> {
-        let scene = Scene::unlit(model, fineness, surroundings, cx.cancel().clone());
+    ) -> Result<ModelScene<'a>, StageError> {
+        let scene = ModelScene::unlit(model, fineness, surroundings, cx.cancel().clone());
         let remember = Remember::new(model, cx);
         let key = |d: &mut Digester| {
             d.text("ambient").count(fineness.ambient);
@@ -91,12 +91,12 @@ impl<'a> Scene<'a> {
             }
         };
         let ambient = remember.light(key, || scene.ambient())?;
-        Ok(Scene { ambient, remember: Some(remember), ..scene })
+        Ok(ModelScene { ambient, remember: Some(remember), ..scene })
     }
 
-    fn prepare(model: &'a Model, fineness: Fineness, surroundings: Option<Surroundings>) -> Scene<'a> {
-        let scene = Scene::unlit(model, fineness, surroundings, Cancel::new());
-        Scene { ambient: scene.ambient(), ..scene }
+    fn prepare(model: &'a Model, fineness: Fineness, surroundings: Option<Surroundings>) -> ModelScene<'a> {
+        let scene = ModelScene::unlit(model, fineness, surroundings, Cancel::new());
+        ModelScene { ambient: scene.ambient(), ..scene }
     }
 
     /// A scene whose ambient light is still to be found.
@@ -105,7 +105,7 @@ impl<'a> Scene<'a> {
         fineness: Fineness,
         surroundings: Option<Surroundings>,
         stop: Cancel,
-    ) -> Scene<'a> {
+    ) -> ModelScene<'a> {
         let mips = |(i, t): (usize, &Texture)| {
             if model.is_normal_map(i) { Mips::of_normals(t) } else { Mips::new(t) }
         };
@@ -113,7 +113,7 @@ impl<'a> Scene<'a> {
         let has_map = |m: &Mesh| model.materials.get(m.material).is_some_and(|m| m.normal_texture.is_some());
         let frames = |m: &Mesh| if has_map(m) { tangents(m) } else { Vec::new() };
         let tangents = model.meshes.par_iter().map(frames).collect();
-        Scene {
+        ModelScene {
             model,
             textures,
             tangents,
@@ -127,7 +127,7 @@ impl<'a> Scene<'a> {
     }
 
     fn ambient(&self) -> Vec<Vec<[f32; 2]>> {
-        let Scene { model, region, fineness, stop, .. } = self;
+        let ModelScene { model, region, fineness, stop, .. } = self;
         match &self.surroundings {
             _ if is_unlit(model) => model.meshes.iter().map(|m| vec![[0.0; 2]; m.positions.len()]).collect(),
             None => light::ambient(model, *region, *fineness, light::studio, stop),
@@ -162,7 +162,7 @@ impl<'a> Scene<'a> {
     }
 
     /// A picture with lines drawn over it.
-    pub fn render_with(&self, view: &View, lines: &[Line]) -> RgbImage {
+    pub fn render_with(&self, view: &View, lines: &[OverlayLine]) -> RgbImage {
         let camera = Camera::fit(self.model, view);
         let lights = self.lights(&camera);
         let (width, height) = (view.width as usize, view.height);
@@ -200,7 +200,7 @@ fn is_unlit(model: &Model) -> bool {
 }
 
 /// The box of the garment, or of everything where there is none.
-fn region(model: &Model) -> Region {
+fn region(model: &Model) -> ShadowRegion {
     let dressed = model.meshes.iter().any(|m| m.name != BODY);
     let points = model.meshes.iter().filter(|m| !dressed || m.name != BODY).flat_map(|m| &m.positions);
     let corners =
@@ -208,12 +208,12 @@ fn region(model: &Model) -> Region {
             Some(b.map_or((*p, *p), |(lo, hi)| (lo.inf(p), hi.sup(p))))
         });
     let (lo, hi) = corners.unwrap_or((Point3::origin(), Point3::origin()));
-    Region::new(lo, hi)
+    ShadowRegion::new(lo, hi)
 }
 
 /// A triangle of the picture.
-struct Face {
-    patch: Patch,
+struct DrawnTriangle {
+    patch: CoveredTriangle,
     mesh: usize,
     /// Vertices in the patch's order.
     corners: [usize; 3],
@@ -225,7 +225,7 @@ struct Face {
 }
 
 /// Every drawable triangle, in the order of the model.
-fn faces(model: &Model, camera: &Camera) -> Vec<Face> {
+fn faces(model: &Model, camera: &Camera) -> Vec<DrawnTriangle> {
     let mesh_faces = |(index, mesh): (usize, &Mesh)| {
         let placed: Vec<Projected> = mesh.positions.iter().map(|p| camera.project(p)).collect();
         let texture = model.materials.get(mesh.material).and_then(|m| m.texture.or(m.normal_texture));
@@ -242,13 +242,13 @@ fn face(
     placed: &[Projected],
     texture: Option<(u32, u32)>,
     t: [usize; 3],
-) -> Option<Face> {
+) -> Option<DrawnTriangle> {
     let known = |i: &usize| *i < placed.len() && *i < mesh.normals.len();
     if !t.iter().all(known) {
         return None;
     }
     let v = t.map(|i| placed[i]);
-    let patch = Patch::new(v)?;
+    let patch = CoveredTriangle::new(v)?;
     let corners = patch.order.map(|k| t[k]);
     // Rows grow downwards, so a triangle seen from its front runs clockwise over the pixels.
     let reversed = patch.order == [0, 1, 2];
@@ -257,7 +257,14 @@ fn face(
         Some(Footprint::new(&texels_per_px(mesh, &corners, size, v, patch.order)?, size))
     };
     let footprint = texture.and_then(footprint).unwrap_or_default();
-    Some(Face { inv_w: patch.order.map(|k| v[k].inv_w), patch, mesh: index, corners, reversed, footprint })
+    Some(DrawnTriangle {
+        inv_w: patch.order.map(|k| v[k].inv_w),
+        patch,
+        mesh: index,
+        corners,
+        reversed,
+        footprint,
+    })
 }
 
 /// The map from pixels to texels, taken as affine over the triangle.
@@ -280,9 +287,9 @@ fn texels_per_px(
 
 /// Everything that the bands of one picture read.
 struct Shot<'a> {
-    scene: &'a Scene<'a>,
+    scene: &'a ModelScene<'a>,
     key: &'a [Vec<f32>],
-    faces: Vec<Face>,
+    faces: Vec<DrawnTriangle>,
     lights: Lights,
     width: usize,
     height: u32,
@@ -376,7 +383,7 @@ impl Shot<'_> {
     }
 
     /// Colour of a face at a place in sub-pixel steps.
-    fn colour(&self, face: &Face, at: [f64; 2]) -> [f32; 3] {
+    fn colour(&self, face: &DrawnTriangle, at: [f64; 2]) -> [f32; 3] {
         let mesh = &self.scene.model.meshes[face.mesh];
         let flat = face.patch.weights(at);
         let deep = [0, 1, 2].map(|k| flat[k] * face.inv_w[k]);
@@ -393,7 +400,13 @@ impl Shot<'_> {
         self.lit(mesh, material, face, &weights, own)
     }
 
-    fn texel(&self, mesh: &Mesh, texture: usize, face: &Face, weights: &[f64; 3]) -> Option<[f32; 3]> {
+    fn texel(
+        &self,
+        mesh: &Mesh,
+        texture: usize,
+        face: &DrawnTriangle,
+        weights: &[f64; 3],
+    ) -> Option<[f32; 3]> {
         let mips = self.scene.textures.get(texture)?;
         let uv = face.corners.map(|i| mesh.uv.get(i).copied());
         let [Some(a), Some(b), Some(c)] = uv else { return None };
@@ -407,7 +420,7 @@ impl Shot<'_> {
         &self,
         mesh: &Mesh,
         material: Option<&Material>,
-        face: &Face,
+        face: &DrawnTriangle,
         weights: &[f64; 3],
         own: [f32; 3],
     ) -> [f32; 3] {
@@ -430,7 +443,7 @@ impl Shot<'_> {
     }
 
     /// The unit normal at a place of a face, towards its front; `map` is the normal map.
-    fn normal(&self, mesh: &Mesh, map: Option<usize>, face: &Face, weights: &[f64; 3]) -> Vector3 {
+    fn normal(&self, mesh: &Mesh, map: Option<usize>, face: &DrawnTriangle, weights: &[f64; 3]) -> Vector3 {
         let blend = |f: &dyn Fn(usize) -> Vector3| -> Vector3 {
             (0..3).map(|k| f(face.corners[k]) * weights[k]).sum()
         };

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::camera::Projected;
-use super::cover::{Patch, STEPS};
-use super::{Form, Frame, Line, Scene, View, garment_model, pictures_of, render};
+use super::cover::{CoveredTriangle, STEPS};
+use super::{Frame, ModelScene, OverlayLine, PictureForm, View, garment_model, pictures_of, render};
 use image::{Rgb, RgbImage};
 use proptest::prelude::*;
 use toile_core::artifact::*;
@@ -179,7 +179,7 @@ fn one_and_two_threads_give_the_same_bits() {
     let model = garment_model(&photographed::garment(10), Some(&photographed::body()));
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Scene::draft(&model).render(&View::front(150)))
+        pool.install(|| ModelScene::draft(&model).render(&View::front(150)))
     };
     assert_eq!(with(1), with(2));
 }
@@ -214,12 +214,12 @@ fn what_stands_in_a_hollow_is_darker() {
 #[test]
 fn lines_are_drawn_over_the_model() {
     let model = red_square();
-    let line = Line {
+    let line = OverlayLine {
         ends: [Point3::new(-1.0, 0.0, -1.0), Point3::new(1.0, 0.0, -1.0)],
         colour: [0, 0, 0],
         width: 3.0,
     };
-    let picture = Scene::new(&model).render_with(&flat(41, 41), &[line]);
+    let picture = ModelScene::new(&model).render_with(&flat(41, 41), &[line]);
     assert_eq!(picture.get_pixel(20, 20).0, [0, 0, 0]);
     assert_eq!(picture.get_pixel(20, 12).0, [255, 0, 0]);
 }
@@ -251,7 +251,7 @@ fn an_edge_name_cannot_leave_its_label() {
         outline_length: 3.4,
     };
     let pictures = pictures_of(&panel, None, 100);
-    let Form::Svg(svg) = &pictures[0].form else { panic!("no drawing") };
+    let PictureForm::Svg(svg) = &pictures[0].form else { panic!("no drawing") };
     assert!(svg.contains(">&lt;script&gt;&amp;</text>"), "{svg}");
 }
 
@@ -276,7 +276,7 @@ proptest! {
         prop_assume!(side(a, b, c) > 0.0 && side(a, b, d) < 0.0);
         let mut hits = vec![0; 20 * 20];
         for t in [[a, b, c], [b, a, d]] {
-            if let Some(patch) = Patch::new(t.map(at)) {
+            if let Some(patch) = CoveredTriangle::new(t.map(at)) {
                 patch.scan(20, 0..20, &[[128, 128]], |_, x, y, _| hits[y * 20 + x] += 1);
             }
         }
@@ -292,7 +292,7 @@ proptest! {
     fn any_floats_are_survived(v in proptest::collection::vec(proptest::num::f64::ANY, 9)) {
         let mut model = red_square();
         model.meshes[0].positions[..3].iter_mut().zip(v.chunks(3)).for_each(|(p, v)| *p = Point3::new(v[0], v[1], v[2]));
-        let picture = Scene::draft(&model).render(&View::front(20));
+        let picture = ModelScene::draft(&model).render(&View::front(20));
         prop_assert_eq!(picture.dimensions(), (16, 20));
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn crop(photo: &RgbImage, area: PixelBox, inside: &GrayImage, size: [
     let [width, height] = size;
     let columns = spans(area.width, width);
     let rows = spans(area.height, height);
-    let source = Source { photo, area, inside };
+    let source = CropSource { photo, area, inside };
     let mut pixels = RgbImage::new(width, height);
     let mut kept = GrayImage::new(width, height);
     let lines = pixels.par_chunks_mut(width as usize * 3).zip(kept.par_chunks_mut(width as usize));
@@ -50,32 +50,32 @@ pub(super) fn crop(photo: &RgbImage, area: PixelBox, inside: &GrayImage, size: [
 }
 
 /// The source pixels under one pixel of the crop: the first, and the weight of each.
-struct Span {
+struct WeightedSpan {
     first: u32,
     weights: Vec<f32>,
 }
 
 /// How `from` source pixels are shared out among `to` pixels.
-fn spans(from: u32, to: u32) -> Vec<Span> {
+fn spans(from: u32, to: u32) -> Vec<WeightedSpan> {
     let step = f64::from(from) / f64::from(to);
     let span = |i: u32| {
         let (a, b) = (f64::from(i) * step, f64::from(i + 1) * step);
         let (first, last) = (a.floor() as u32, (b.ceil() as u32).min(from));
         let weight = |k: u32| (b.min(f64::from(k + 1)) - a.max(f64::from(k))).max(0.0) as f32;
-        Span { first, weights: (first..last).map(weight).collect() }
+        WeightedSpan { first, weights: (first..last).map(weight).collect() }
     };
     (0..to).map(span).collect()
 }
 
-struct Source<'a> {
+struct CropSource<'a> {
     photo: &'a RgbImage,
     area: PixelBox,
     inside: &'a GrayImage,
 }
 
-impl Source<'_> {
+impl CropSource<'_> {
     /// Mean colour of the inside; `None` where less than half is inside.
-    fn average(&self, columns: &Span, rows: &Span) -> Option<[u8; 3]> {
+    fn average(&self, columns: &WeightedSpan, rows: &WeightedSpan) -> Option<[u8; 3]> {
         let (mut sum, mut weight, mut all) = ([0.0; 3], 0.0, 0.0);
         let mut only = [0; 3];
         for (y, wy) in (rows.first..).zip(&rows.weights) {

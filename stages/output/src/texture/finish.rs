@@ -18,7 +18,7 @@ use toile_core::artifact::Point2;
 
 /// How an edge is finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FinishKind {
     /// Bound with a knitted rib.
     Rib,
     /// Turned under and stitched.
@@ -27,8 +27,8 @@ pub(super) enum Kind {
 
 /// An edge of a panel and its finish.
 #[derive(Debug, Clone)]
-pub(super) struct Finish {
-    pub(super) kind: Kind,
+pub(super) struct EdgeFinish {
+    pub(super) kind: FinishKind,
     /// Width of the rib, or distance of the stitches from the edge, metres.
     pub(super) width: f64,
     /// The edge, in the flat panel's coordinates.
@@ -57,7 +57,7 @@ const GROOVE: [f64; 2] = [1.1e-3, 0.4e-3];
 
 /// What is seen at a texel beside plain cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Look {
+struct TexelLook {
     /// Whether the cloth's own threads show.
     cloth: bool,
     /// Factor of the colour.
@@ -66,30 +66,30 @@ struct Look {
     height: f64,
 }
 
-const CLOTH: Look = Look { cloth: true, light: 1.0, height: 0.0 };
+const CLOTH: TexelLook = TexelLook { cloth: true, light: 1.0, height: 0.0 };
 
-impl Finish {
+impl EdgeFinish {
     /// How far from the edge it is seen, metres.
     fn reach(&self) -> f64 {
         self.width + 3.0 * GROOVE[0]
     }
 
     /// What is seen at a distance from the edge and a place along it, metres.
-    fn look(&self, distance: f64, along: f64) -> Look {
+    fn look(&self, distance: f64, along: f64) -> TexelLook {
         let off = (distance - self.width).abs();
         match self.kind {
-            Kind::Rib if off < SEAM => Look { cloth: true, light: SEAM_LIGHT, height: -GROOVE[1] },
-            Kind::Rib if distance < self.width => {
+            FinishKind::Rib if off < SEAM => TexelLook { cloth: true, light: SEAM_LIGHT, height: -GROOVE[1] },
+            FinishKind::Rib if distance < self.width => {
                 let out = 0.5 + 0.5 * (TAU * along / RIB_PITCH).cos();
                 let light = (RIB_BACK + (1.0 - RIB_BACK) * out) / (0.5 + 0.5 * RIB_BACK);
-                Look { cloth: false, light, height: RIB_HEIGHT * out }
+                TexelLook { cloth: false, light, height: RIB_HEIGHT * out }
             }
-            Kind::Rib => CLOTH,
-            Kind::Stitches => {
+            FinishKind::Rib => CLOTH,
+            FinishKind::Stitches => {
                 let deep = (-(off / GROOVE[0]).powi(2)).exp();
                 let thread = off < THREAD[1] && along.rem_euclid(STITCH) < THREAD[0];
                 let light = if thread { THREAD_LIGHT } else { 1.0 - (1.0 - GROOVE_LIGHT) * deep };
-                Look { cloth: true, light, height: if thread { 0.0 } else { -GROOVE[1] * deep } }
+                TexelLook { cloth: true, light, height: if thread { 0.0 } else { -GROOVE[1] * deep } }
             }
         }
     }
@@ -97,7 +97,7 @@ impl Finish {
 
 /// The picture of one panel.
 #[derive(Debug)]
-pub(super) struct Sheet {
+pub(super) struct PanelPicture {
     pub(super) pixels: RgbImage,
     /// Heights, metres, in rows from the top.
     heights: Vec<f32>,
@@ -107,9 +107,14 @@ pub(super) struct Sheet {
     texel: f64,
 }
 
-impl Sheet {
+impl PanelPicture {
     /// Of a panel's flat vertices in cloth, with finished edges; ribs have the colour `rib`.
-    pub(super) fn new(flat: &[Point2], swatch: &Swatch, finishes: &[Finish], rib: Colour) -> Sheet {
+    pub(super) fn new(
+        flat: &[Point2],
+        swatch: &Swatch,
+        finishes: &[EdgeFinish],
+        rib: Colour,
+    ) -> PanelPicture {
         let (lo, hi) = flat
             .iter()
             .fold((Point2::new(f64::MAX, f64::MAX), Point2::new(f64::MIN, f64::MIN)), |(lo, hi), p| {
@@ -120,7 +125,7 @@ impl Sheet {
         let corner = Point2::new((lo.x / texel).floor() * texel, (hi.y / texel).ceil() * texel);
         let count = |length: f64| (length / texel).ceil().max(1.0) as usize + 1;
         let (width, height) = (count(hi.x - corner.x), count(corner.y - lo.y));
-        let near = Near::of(finishes, corner, texel, [width, height]);
+        let near = NearestFinish::of(finishes, corner, texel, [width, height]);
         let [i0, j0] = [corner.x, -corner.y].map(|l| (l / texel).round() as i64);
         let mut pixels = RgbImage::new(width as u32, height as u32);
         let mut heights = vec![0.0; width * height];
@@ -134,7 +139,7 @@ impl Sheet {
                 pixel.copy_from_slice(&colour.map(|c| encode(c * look.light as f32)));
             }
         });
-        Sheet { pixels, heights, corner, texel }
+        PanelPicture { pixels, heights, corner, texel }
     }
 
     /// The normal map of threads, ribs and stitches.
@@ -154,10 +159,10 @@ impl Sheet {
 
 /// For every texel the nearest finished edge in reach: which one, its distance and the place along
 /// it, metres.
-struct Near(Vec<Option<(u32, f32, f32)>>);
+struct NearestFinish(Vec<Option<(u32, f32, f32)>>);
 
-impl Near {
-    fn of(finishes: &[Finish], corner: Point2, texel: f64, [width, height]: [usize; 2]) -> Near {
+impl NearestFinish {
+    fn of(finishes: &[EdgeFinish], corner: Point2, texel: f64, [width, height]: [usize; 2]) -> NearestFinish {
         let mut near = vec![None; width * height];
         for (k, finish) in finishes.iter().enumerate() {
             let mut begins = 0.0;
@@ -185,10 +190,10 @@ impl Near {
                 begins += (b - a).norm();
             }
         }
-        Near(near)
+        NearestFinish(near)
     }
 
-    fn look(&self, finishes: &[Finish], texel: usize) -> Look {
+    fn look(&self, finishes: &[EdgeFinish], texel: usize) -> TexelLook {
         self.0[texel].map_or(CLOTH, |(k, distance, along)| {
             finishes[k as usize].look(f64::from(distance), f64::from(along))
         })
@@ -204,22 +209,22 @@ fn to_segment(p: Point2, a: Point2, b: Point2) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::weave::{Cloth, tile};
+    use super::super::weave::{ClothKind, tile};
     use super::*;
     use proptest::prelude::*;
 
     const GREY: Colour = [0.2; 3];
 
     /// A panel of 6 x 8 cm with its lower edge finished.
-    fn sheet(kind: Kind, width: f64) -> Sheet {
+    fn sheet(kind: FinishKind, width: f64) -> PanelPicture {
         let corners = [[0.0, 0.0], [0.06, 0.0], [0.06, 0.08], [0.0, 0.08]].map(|[x, y]| Point2::new(x, y));
         let line = vec![corners[0], corners[1]];
-        let swatch = tile(Cloth::Plain(GREY), 0.02, 256).swatch(0.08 / MOST_PX);
-        Sheet::new(&corners, &swatch, &[Finish { kind, width, line }], GREY)
+        let swatch = tile(ClothKind::Plain(GREY), 0.02, 256).swatch(0.08 / MOST_PX);
+        PanelPicture::new(&corners, &swatch, &[EdgeFinish { kind, width, line }], GREY)
     }
 
     /// Mean light of a row, so many metres above the lower edge.
-    fn row(sheet: &Sheet, above: f64) -> f64 {
+    fn row(sheet: &PanelPicture, above: f64) -> f64 {
         let j = ((sheet.corner.y - above) / sheet.texel) as u32;
         let w = sheet.pixels.width();
         (0..w).map(|i| f64::from(sheet.pixels.get_pixel(i, j).0[0])).sum::<f64>() / f64::from(w)
@@ -227,7 +232,7 @@ mod tests {
 
     #[test]
     fn stitches_lie_in_a_groove_at_their_distance() {
-        let sheet = sheet(Kind::Stitches, 0.02);
+        let sheet = sheet(FinishKind::Stitches, 0.02);
         let plain = row(&sheet, 0.05);
         assert!(row(&sheet, 0.02 + 0.001) < 0.95 * plain, "{} {plain}", row(&sheet, 0.021));
         assert!((row(&sheet, 0.01) - plain).abs() < 0.02 * plain, "the hem is of the cloth");
@@ -241,7 +246,7 @@ mod tests {
 
     #[test]
     fn a_rib_has_columns_upright_on_its_edge() {
-        let sheet = sheet(Kind::Rib, 0.02);
+        let sheet = sheet(FinishKind::Rib, 0.02);
         let j = ((sheet.corner.y - 0.01) / sheet.texel) as u32;
         let at = |i: u32, j: u32| f64::from(sheet.pixels.get_pixel(i, j).0[0]);
         let across: Vec<f64> = (0..sheet.pixels.width()).map(|i| at(i, j)).collect();
@@ -257,7 +262,7 @@ mod tests {
 
     #[test]
     fn corners_of_the_panel_lie_in_the_picture() {
-        let sheet = sheet(Kind::Rib, 0.02);
+        let sheet = sheet(FinishKind::Rib, 0.02);
         for p in [Point2::origin(), Point2::new(0.06, 0.08)] {
             assert!(sheet.uv(&p).iter().all(|c| (0.0..=1.0).contains(c)), "{p} {:?}", sheet.uv(&p));
         }
@@ -270,8 +275,8 @@ mod tests {
         fn any_edge_is_drawn(points in proptest::collection::vec([-0.1..0.2_f64, -0.1..0.2_f64], 0..6), width in 0.001..0.1_f64) {
             let line = points.into_iter().map(|[x, y]| Point2::new(x, y)).collect();
             let flat = [Point2::origin(), Point2::new(0.05, 0.03)];
-            let swatch = tile(Cloth::Twill(GREY), 0.02, 64).swatch(1e-3);
-            let sheet = Sheet::new(&flat, &swatch, &[Finish { kind: Kind::Stitches, width, line }], GREY);
+            let swatch = tile(ClothKind::Twill(GREY), 0.02, 64).swatch(1e-3);
+            let sheet = PanelPicture::new(&flat, &swatch, &[EdgeFinish { kind: FinishKind::Stitches, width, line }], GREY);
             prop_assert_eq!(sheet.heights.len(), sheet.pixels.len() / 3);
         }
     }

@@ -47,7 +47,7 @@ const SQUARE: f64 = 0.12;
 const SIDES: (usize, usize) = (8, 128);
 
 /// What a picture of cloth shows.
-enum Shown {
+enum ShownCloth {
     /// A pattern all over, or no cloth.
     Pattern,
     /// Cloth, but where this is marked.
@@ -57,11 +57,11 @@ enum Shown {
 /// Makes a picture of cloth plain; false where a pattern covers all of it, or where there is no
 /// cloth: then it stays. `sure` marks the cloth.
 pub(super) fn plain(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
-    let Shown::Cloth(print) = shown(pixels, sure) else { return false };
+    let ShownCloth::Cloth(print) = shown(pixels, sure) else { return false };
     let keep = |x: u32, y: u32| sure.get_pixel(x, y).0[0] != 0 && print.get_pixel(x, y).0[0] == 0;
     let kept = GrayImage::from_fn(pixels.width(), pixels.height(), |x, y| Luma([u8::from(keep(x, y)) * 255]));
     let wide = f64::from(pixels.width().min(pixels.height())) * WIDE;
-    let Some(light) = Light::from_level(pixels, &kept, wide.max(1.0).log2().round() as usize) else {
+    let Some(light) = SpreadColours::from_level(pixels, &kept, wide.max(1.0).log2().round() as usize) else {
         return false;
     };
     let weave = Weave::of(pixels, &kept);
@@ -97,7 +97,7 @@ fn small_size(pixels: &RgbImage) -> (u32, u32) {
 }
 
 /// What the picture shows, at its own size.
-fn shown(pixels: &RgbImage, sure: &GrayImage) -> Shown {
+fn shown(pixels: &RgbImage, sure: &GrayImage) -> ShownCloth {
     let (w, h) = pixels.dimensions();
     let (small_w, small_h) = small_size(pixels);
     let small = resize(pixels, small_w, small_h, FilterType::Triangle);
@@ -105,13 +105,15 @@ fn shown(pixels: &RgbImage, sure: &GrayImage) -> Shown {
     let inside = GrayImage::from_fn(small_w, small_h, |x, y| {
         Luma([u8::from(inside.get_pixel(x, y).0[0] == 255) * 255])
     });
-    let Some(Shown::Cloth(found)) = shown_in(&small, &inside) else { return Shown::Pattern };
+    let Some(ShownCloth::Cloth(found)) = shown_in(&small, &inside) else { return ShownCloth::Pattern };
     let large = resize(&found, w, h, FilterType::Triangle);
-    Shown::Cloth(GrayImage::from_fn(w, h, |x, y| Luma([u8::from(large.get_pixel(x, y).0[0] > 127) * 255])))
+    ShownCloth::Cloth(GrayImage::from_fn(w, h, |x, y| {
+        Luma([u8::from(large.get_pixel(x, y).0[0] > 127) * 255])
+    }))
 }
 
 /// `None` where there is no cloth.
-fn shown_in(small: &RgbImage, inside: &GrayImage) -> Option<Shown> {
+fn shown_in(small: &RgbImage, inside: &GrayImage) -> Option<ShownCloth> {
     let on: Vec<bool> = inside.as_raw().iter().map(|v| *v != 0).collect();
     let area = on.iter().filter(|on| **on).count() as f64;
     let core = eroded(inside, BAND * area.sqrt());
@@ -125,7 +127,7 @@ fn shown_in(small: &RgbImage, inside: &GrayImage) -> Option<Shown> {
     // The lightness of the cloth around, as a picture of three equal channels.
     let grey =
         RgbImage::from_fn(w, h, |x, y| image::Rgb([(colours[(y * w + x) as usize].x * 2.55) as u8; 3]));
-    let around = Light::blurred(&grey, &alike)?;
+    let around = SpreadColours::blurred(&grey, &alike)?;
     let differs = |i: usize| {
         let here = around.at(i as u32 % w, i as u32 / w)[0] / 2.55;
         on[i] && (!like(i) || (colours[i].x - here).abs() > LIGHT[1])
@@ -138,8 +140,8 @@ fn shown_in(small: &RgbImage, inside: &GrayImage) -> Option<Shown> {
     let is_pattern =
         share(&on) > PATTERN[1] || share(&band) > PATTERN[0] || spread(&found, &on) > MOST_SPREAD;
     Some(match is_pattern {
-        true => Shown::Pattern,
-        false => Shown::Cloth(dilate(&close(&found, AROUND), AROUND)),
+        true => ShownCloth::Pattern,
+        false => ShownCloth::Cloth(dilate(&close(&found, AROUND), AROUND)),
     })
 }
 
@@ -181,29 +183,29 @@ fn commonest(colours: &[Vector3<f64>], marked: &[bool]) -> Option<Vector3<f64>> 
 }
 
 /// Colours known at some pixels, carried on to all others by averages of ever larger squares.
-struct Light {
+struct SpreadColours {
     width: usize,
     colours: Vec<[f64; 3]>,
 }
 
 /// Pixels of a level: the sum of the colours known below it, and how many they are.
-type Level = (usize, usize, Vec<([f64; 3], f64)>);
+type ColourLevel = (usize, usize, Vec<([f64; 3], f64)>);
 
-impl Light {
+impl SpreadColours {
     /// The colours of the known, as averages of squares of 16 pixels.
-    fn blurred(pixels: &RgbImage, known: &GrayImage) -> Option<Light> {
+    fn blurred(pixels: &RgbImage, known: &GrayImage) -> Option<SpreadColours> {
         Self::from_level(pixels, known, 4)
     }
 
     /// The same, as averages of squares of 2 to the power of `finest`; `None` where no pixel is
     /// known.
-    fn from_level(pixels: &RgbImage, known: &GrayImage, finest: usize) -> Option<Light> {
+    fn from_level(pixels: &RgbImage, known: &GrayImage, finest: usize) -> Option<SpreadColours> {
         let (w, h) = (pixels.width() as usize, pixels.height() as usize);
         let first = pixels.pixels().zip(known.as_raw()).map(|(p, on)| match on {
             0 => ([0.0; 3], 0.0),
             _ => (p.0.map(f64::from), 1.0),
         });
-        let mut levels: Vec<Level> = vec![(w, h, first.collect())];
+        let mut levels: Vec<ColourLevel> = vec![(w, h, first.collect())];
         while levels[levels.len() - 1].0.max(levels[levels.len() - 1].1) > 1 {
             levels.push(halved(&levels[levels.len() - 1]));
         }
@@ -230,7 +232,7 @@ impl Light {
             colours = (0..w * h).map(finer).collect();
             size = (*w, *h);
         }
-        Some(Light { width: w, colours })
+        Some(SpreadColours { width: w, colours })
     }
 
     fn at(&self, x: u32, y: u32) -> [f64; 3] {
@@ -242,7 +244,7 @@ fn mean((sum, count): &([f64; 3], f64)) -> [f64; 3] {
     sum.map(|s| s / count.max(1.0))
 }
 
-fn halved((w, h, fine): &Level) -> Level {
+fn halved((w, h, fine): &ColourLevel) -> ColourLevel {
     let (cw, ch) = (w.div_ceil(2), h.div_ceil(2));
     let mut coarse = vec![([0.0; 3], 0.0); cw * ch];
     for (i, (sum, count)) in fine.iter().enumerate() {
@@ -296,7 +298,7 @@ impl Weave {
         let cut =
             image::imageops::crop_imm(pixels, left as u32, top as u32, side as u32, side as u32).to_image();
         let all = GrayImage::from_pixel(side as u32, side as u32, Luma([255]));
-        let light = Light::from_level(&cut, &all, 3)?;
+        let light = SpreadColours::from_level(&cut, &all, 3)?;
         let thread = |(x, y, p): (u32, u32, &image::Rgb<u8>)| {
             let light = light.at(x, y);
             [0, 1, 2].map(|c| f64::from(p.0[c]) - light[c])

@@ -16,7 +16,7 @@ use crate::render::{LINEAR, encode};
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
 use toile_core::prelude::*;
-use toile_image::grid::{End, Grid, Steps};
+use toile_image::grid::{Grid, Steps, StoppingRule};
 
 /// Side of a cell, metres: wider than stitches, narrower than creases.
 const CELL: f64 = 3e-3;
@@ -35,7 +35,7 @@ const DARK: f64 = 0.02;
 /// What joins cells beyond the garment: light goes on there evenly.
 const BEYOND: f64 = 1e-3;
 /// When the rounds end.
-const END: End = End { residual: 1e-5, rounds: 80 };
+const END: StoppingRule = StoppingRule { residual: 1e-5, rounds: 80 };
 
 /// The light of a photo on a grid of cells.
 pub(super) struct Shading {

@@ -17,7 +17,7 @@ pub(super) type Colour = [f32; 3];
 
 /// What a cloth is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Cloth {
+pub(super) enum ClothKind {
     /// One over, one under.
     Plain(Colour),
     /// Two over, two under, each yarn one on from the last: diagonal ribs.
@@ -34,14 +34,14 @@ pub(super) enum Cloth {
     Stripe { first: Colour, second: Colour },
 }
 
-impl Cloth {
+impl ClothKind {
     /// Its colour; the first of two.
     pub(super) fn first(self) -> Colour {
         match self {
-            Cloth::Plain(c) | Cloth::Twill(c) | Cloth::Rib(c) | Cloth::Jersey(c) => c,
-            Cloth::Denim { warp: c, .. } | Cloth::Check { first: c, .. } | Cloth::Stripe { first: c, .. } => {
-                c
-            }
+            ClothKind::Plain(c) | ClothKind::Twill(c) | ClothKind::Rib(c) | ClothKind::Jersey(c) => c,
+            ClothKind::Denim { warp: c, .. }
+            | ClothKind::Check { first: c, .. }
+            | ClothKind::Stripe { first: c, .. } => c,
         }
     }
 }
@@ -141,24 +141,24 @@ const BACK_LIGHT: f64 = 0.72;
 const THICKNESS: f64 = 0.5;
 
 /// A tile of `size` by `size` pixels; `repeat` is that of checks and stripes, metres.
-pub(super) fn tile(cloth: Cloth, repeat: f64, size: u32) -> Tile {
+pub(super) fn tile(cloth: ClothKind, repeat: f64, size: u32) -> Tile {
     let side = match cloth {
-        Cloth::Check { .. } | Cloth::Stripe { .. } => (SIDE / repeat).ceil() * repeat,
+        ClothKind::Check { .. } | ClothKind::Stripe { .. } => (SIDE / repeat).ceil() * repeat,
         _ => SIDE,
     };
     let shade: Box<dyn Fn(f64, f64) -> (f64, Colour) + Sync> = match cloth {
-        Cloth::Plain(c) => woven(side, YARN, |i, j| (i + j) % 2 == 0, move |_| c, move |_| c),
-        Cloth::Twill(c) => woven(side, YARN, |i, j| (i + j) % 4 < 2, move |_| c, move |_| c),
-        Cloth::Denim { warp, weft } => {
+        ClothKind::Plain(c) => woven(side, YARN, |i, j| (i + j) % 2 == 0, move |_| c, move |_| c),
+        ClothKind::Twill(c) => woven(side, YARN, |i, j| (i + j) % 4 < 2, move |_| c, move |_| c),
+        ClothKind::Denim { warp, weft } => {
             woven(side, HEAVY_YARN, |i, j| (i + j) % 4 != 0, move |_| warp, move |_| weft)
         }
-        Cloth::Rib(c) => knit(side, c, true),
-        Cloth::Jersey(c) => knit(side, c, false),
-        Cloth::Check { first, second } => {
+        ClothKind::Rib(c) => knit(side, c, true),
+        ClothKind::Jersey(c) => knit(side, c, false),
+        ClothKind::Check { first, second } => {
             let band = move |s: f64| if (s * side / repeat).fract() < 0.5 { first } else { second };
             woven(side, YARN, |i, j| (i + j) % 2 == 0, band, band)
         }
-        Cloth::Stripe { first, second } => {
+        ClothKind::Stripe { first, second } => {
             let band = move |s: f64| if (s * side / repeat).fract() < 0.5 { first } else { second };
             // The weft goes under: its colour would show as dots.
             woven(side, YARN, |_, _| true, band, band)
@@ -173,8 +173,8 @@ pub(super) fn tile(cloth: Cloth, repeat: f64, size: u32) -> Tile {
         *pixel = Rgb(colour.map(|c| encode(c * (light / mean) as f32)));
     }
     let pitch = match cloth {
-        Cloth::Denim { .. } => HEAVY_YARN,
-        Cloth::Rib(_) | Cloth::Jersey(_) => STITCH[0],
+        ClothKind::Denim { .. } => HEAVY_YARN,
+        ClothKind::Rib(_) | ClothKind::Jersey(_) => STITCH[0],
         _ => YARN,
     };
     Tile { pixels, side, heights: texels.iter().map(|t| t.0 as f32).collect(), pitch }
@@ -261,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_swatch_is_the_mean_of_its_tile() {
-        let tile = tile(Cloth::Twill(BLUE), 0.02, 100);
+        let tile = tile(ClothKind::Twill(BLUE), 0.02, 100);
         let swatch = tile.swatch(0.064 / 7.0);
         assert_eq!(swatch.count, 7);
         let sum: f32 = (0..49).map(|k| swatch.at(k % 7, k / 7).0[2]).sum();
@@ -282,7 +282,9 @@ mod tests {
 
     #[test]
     fn the_mean_of_a_cloth_of_one_colour_is_that_colour() {
-        for cloth in [Cloth::Plain(BLUE), Cloth::Twill(BLUE), Cloth::Rib(BLUE), Cloth::Jersey(BLUE)] {
+        for cloth in
+            [ClothKind::Plain(BLUE), ClothKind::Twill(BLUE), ClothKind::Rib(BLUE), ClothKind::Jersey(BLUE)]
+        {
             let found = mean(&tile(cloth, 0.02, 512).pixels, |_, _| true);
             for c in 0..3 {
                 assert!((found[c] / BLUE[c] - 1.0).abs() < 0.03, "{cloth:?}: {found:?}");
@@ -292,7 +294,7 @@ mod tests {
 
     #[test]
     fn denim_shows_three_quarters_of_its_warp() {
-        let tile = tile(Cloth::Denim { warp: BLUE, weft: WHITE }, 0.02, 1024);
+        let tile = tile(ClothKind::Denim { warp: BLUE, weft: WHITE }, 0.02, 1024);
         let found = mean(&tile.pixels, |_, _| true);
         let blend = [0, 1, 2].map(|c| 0.75 * BLUE[c] + 0.25 * WHITE[c]);
         for c in 0..3 {
@@ -309,15 +311,17 @@ mod tests {
             let part = |x0: u32, y0: u32| mean(&tile.pixels, |x, y| x / 128 == x0 && y / 128 == y0)[2];
             [part(0, 0), part(1, 0), part(0, 1), part(1, 1)]
         };
-        let [a, b, c, d] = band(Cloth::Stripe { first: BLUE, second: WHITE });
+        let [a, b, c, d] = band(ClothKind::Stripe { first: BLUE, second: WHITE });
         assert!(b > 2.0 * a && (c / a - 1.0).abs() < 0.05 && (d / b - 1.0).abs() < 0.05, "{a} {b} {c} {d}");
-        let [a, b, c, d] = band(Cloth::Check { first: BLUE, second: WHITE });
+        let [a, b, c, d] = band(ClothKind::Check { first: BLUE, second: WHITE });
         assert!(b > 1.3 * a && (c / b - 1.0).abs() < 0.05 && d > 1.3 * b, "{a} {b} {c} {d}");
     }
 
     #[test]
     fn threads_of_a_normal_map_lean_to_both_sides_alike_and_stand_upright_in_the_mean() {
-        for cloth in [Cloth::Plain(BLUE), Cloth::Denim { warp: BLUE, weft: WHITE }, Cloth::Rib(BLUE)] {
+        for cloth in
+            [ClothKind::Plain(BLUE), ClothKind::Denim { warp: BLUE, weft: WHITE }, ClothKind::Rib(BLUE)]
+        {
             let map = tile(cloth, 0.02, 512).normal_map(1.0);
             let mean = |c: usize| map.pixels().map(|p| f64::from(p.0[c])).sum::<f64>() / (512.0 * 512.0);
             assert!((mean(0) - 127.5).abs() < 2.0 && (mean(1) - 127.5).abs() < 4.0, "{cloth:?}");
@@ -330,7 +334,9 @@ mod tests {
 
     #[test]
     fn a_tile_goes_on_where_it_begins() {
-        for cloth in [Cloth::Twill(BLUE), Cloth::Jersey(BLUE), Cloth::Check { first: BLUE, second: WHITE }] {
+        for cloth in
+            [ClothKind::Twill(BLUE), ClothKind::Jersey(BLUE), ClothKind::Check { first: BLUE, second: WHITE }]
+        {
             let pixels = tile(cloth, 0.02, 1024).pixels;
             let step = |a: u32, b: u32| -> f64 {
                 let difference = |y: u32| pixels.get_pixel(a, y).0[2].abs_diff(pixels.get_pixel(b, y).0[2]);

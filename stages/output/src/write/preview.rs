@@ -3,7 +3,7 @@
 //!
 //! See the renderer for method, cost and limits.
 
-use crate::render::{Form, Frame, Scene, View, jpeg, thumbnail};
+use crate::render::{Frame, ModelScene, PictureForm, View, jpeg, thumbnail};
 use image::{ImageFormat, RgbImage};
 use rayon::prelude::*;
 use std::io::Cursor;
@@ -58,7 +58,7 @@ impl Preview {
         cx: &Context,
     ) -> Result<OutputFiles, StageError> {
         super::check::check_model(model)?;
-        let scene = Scene::draft_in(model, cx)?;
+        let scene = ModelScene::draft_in(model, cx)?;
         let frame = match self.frame {
             Framing::Garment => Frame::Garment,
             Framing::Whole => Frame::Whole,
@@ -84,7 +84,7 @@ impl Preview {
                 row.push(scene.render(&View { frame, ..view(height) }));
             }
             cx.check()?;
-            let Some(Form::Jpeg(bytes)) = jpeg(&beside(&row)) else {
+            let Some(PictureForm::Jpeg(bytes)) = jpeg(&beside(&row)) else {
                 return Err(StageError::internal("sheet.jpg cannot be encoded"));
             };
             files.push(OutputFile::new("sheet.jpg", bytes));

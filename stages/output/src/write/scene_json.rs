@@ -4,7 +4,7 @@ use crate::file_names::check_name;
 use nalgebra::Vector3;
 use toile_cloth::scene::{Phase, SceneBody, body_to_obj, to_json};
 use toile_core::prelude::*;
-use toile_drape::engine::{Setting, scene_of};
+use toile_drape::engine::{SceneSetting, scene_of};
 
 /// Writes the garment, its seams, fabric and body as a prepared scene, `garment-scene-1`.
 ///
@@ -48,7 +48,7 @@ impl SceneJson {
         check_name(&self.name)?;
         let card = collider.map(|c| c.scheme.card());
         let down = Vector3::new(0.0, -self.gravity, 0.0);
-        let setting = Setting {
+        let setting = SceneSetting {
             gravity: down,
             air: None,
             thickness: card.map_or(PLAIN.0, |c| c.thickness),

@@ -54,9 +54,9 @@ const MIDDLE: f64 = 0.65;
 ///
 /// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the
 /// pattern says nothing, fronts, backs, sleeves, legs in one piece and waistbands are placed by
-/// their names, seams and sizes. What was decided and moved is in the log. Where legs are swung and
-/// sleeves bent, the places without that are left as other starts, which `StaticEquilibrium` tries
-/// where the garment does not sew.
+/// their names, seams and sizes. What was decided and moved is in the log. Where legs are swung,
+/// the places without that are left as another start, which `StaticEquilibrium` tries where the
+/// garment does not sew.
 #[stage(
     role = Placement,
     version = 6,

@@ -6,7 +6,7 @@ use crate::flatten::{flatten, loop_points};
 use crate::inside::bounds;
 use crate::marks::{self, NotchMark, SeamMark};
 use crate::names::PieceNames;
-use crate::parts::{Part, parts};
+use crate::parts::{EdgePart, parts};
 use toile_core::artifact::{Piece, Point2, Vector2, polygon_area, polyline_length};
 
 /// Curves are followed to this, metres.
@@ -23,7 +23,7 @@ const CORNER: f64 = 25.0;
 const INSIDE: f64 = 6e-3;
 
 /// A piece as a block.
-pub(super) struct Block<'a> {
+pub(super) struct PieceBlock<'a> {
     pub name: String,
     pub names: PieceNames,
     pub notes: Vec<String>,
@@ -37,7 +37,7 @@ pub(super) struct Block<'a> {
     numbers: &'a [SeamMark],
 }
 
-impl<'a> Block<'a> {
+impl<'a> PieceBlock<'a> {
     pub(super) fn new(
         p: &'a Piece,
         cut: Option<&[Point2]>,
@@ -50,7 +50,7 @@ impl<'a> Block<'a> {
         let mut edges: Vec<Vec<Point2>> = Vec::new();
         // Points of edges that are too short to be some of their own.
         let mut short = Vec::new();
-        for Part { edge, start, end, curve } in
+        for EdgePart { edge, start, end, curve } in
             parts(&p.outer, |chord, length| chord <= JOINT && length > 4.0 * JOINT)
         {
             let points = flatten(start, end, &curve, TOLERANCE);
@@ -84,7 +84,7 @@ impl<'a> Block<'a> {
             true => NotchMark { at: n.at + n.out * widths[n.edge], ..n },
             false => n,
         });
-        Block {
+        PieceBlock {
             name,
             names,
             notes,

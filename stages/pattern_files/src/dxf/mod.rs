@@ -18,11 +18,11 @@ use crate::allowance::{CutLines, cut_lines};
 use crate::error::{WriteError, writable};
 use crate::marks;
 use crate::names::{FileNames, one_line, sewable, unique};
-use crate::options::Options;
+use crate::options::DrawingOptions;
 use crate::shelf::pack;
 use crate::sidecar;
 use crate::written::Written;
-use block::Block;
+use block::PieceBlock;
 use std::collections::BTreeSet;
 use text::{Tags, encoded, held};
 use toile_core::artifact::{Pattern, Piece};
@@ -53,7 +53,11 @@ pub enum Standard {
 ///
 /// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
 /// [`FARTHEST`](crate::FARTHEST); a seam allowance that cannot be cut.
-pub fn to_dxf(pattern: &Pattern, standard: Standard, options: &Options) -> Result<Written, WriteError> {
+pub fn to_dxf(
+    pattern: &Pattern,
+    standard: Standard,
+    options: &DrawingOptions,
+) -> Result<Written, WriteError> {
     writable(pattern)?;
     let cut = cut_lines(pattern, &options.allowances)?;
     let plain = made(pattern, standard, options, &cut, false);
@@ -62,7 +66,13 @@ pub fn to_dxf(pattern: &Pattern, standard: Standard, options: &Options) -> Resul
     Ok(if mistaken { made(pattern, standard, options, &cut, true) } else { plain })
 }
 
-fn made(pattern: &Pattern, standard: Standard, options: &Options, cut: &CutLines, ascii: bool) -> Written {
+fn made(
+    pattern: &Pattern,
+    standard: Standard,
+    options: &DrawingOptions,
+    cut: &CutLines,
+    ascii: bool,
+) -> Written {
     let (mut notes, mut warnings) = (left_out(&pattern.pieces), cut.notes.clone());
     let numbers = marks::seam_marks(pattern);
     let size = match one_line(&options.size, MOST_NAME) {
@@ -77,7 +87,7 @@ fn made(pattern: &Pattern, standard: Standard, options: &Options, cut: &CutLines
             notes.push(format!("piece \"{}\" is called \"{label}\" in the file", p.name));
         }
         let name = block_name(&label, &size, &mut block_names);
-        let block = Block::new(p, cut.lines[k].as_deref(), &cut.widths[k], &numbers[k], [name, label]);
+        let block = PieceBlock::new(p, cut.lines[k].as_deref(), &cut.widths[k], &numbers[k], [name, label]);
         warnings.extend(block.notes.iter().cloned());
         names.insert(&p.name, block.names.clone());
         blocks.push(block);
@@ -130,9 +140,9 @@ fn block_name(piece: &str, size: &str, taken: &mut BTreeSet<String>) -> String {
 fn entities(
     tags: &mut Tags,
     pattern: &Pattern,
-    blocks: &[Block<'_>],
+    blocks: &[PieceBlock<'_>],
     standard: Standard,
-    options: &Options,
+    options: &DrawingOptions,
     size: &str,
     ascii: bool,
 ) {
@@ -150,7 +160,7 @@ fn entities(
             texts.push("ASTM/D13Proposal 1 Version: D 6673-04".to_owned());
         }
     }
-    let sizes: Vec<[f64; 2]> = blocks.iter().map(Block::size).collect();
+    let sizes: Vec<[f64; 2]> = blocks.iter().map(PieceBlock::size).collect();
     let area: f64 = sizes.iter().map(|s| (s[0] + GAP) * (s[1] + GAP)).sum();
     let (places, _) = pack(&sizes, area.sqrt() * 1.2, GAP);
     for (k, text) in texts.iter().enumerate() {

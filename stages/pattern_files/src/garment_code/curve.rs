@@ -8,20 +8,20 @@ const ACCURACY: f64 = 1e-10;
 
 /// One edge of the file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Curve {
+pub(super) struct FileCurve {
     pub start: Point2,
     pub end: Point2,
     pub shape: EdgeCurve,
 }
 
-impl Curve {
+impl FileCurve {
     /// Its length, metres.
     pub(super) fn length(&self) -> f64 {
         EdgePath::new(self.start, self.end, &self.shape).length()
     }
 
     /// Both parts of it, cut at that length from its start, metres.
-    pub(super) fn cut(&self, at: f64) -> [Curve; 2] {
+    pub(super) fn cut(&self, at: f64) -> [FileCurve; 2] {
         let path = EdgePath::new(self.start, self.end, &self.shape);
         let k = |p: Point2| kurbo::Point::new(p.x, p.y);
         let p = |q: kurbo::Point| Point2::new(q.x, q.y);
@@ -50,8 +50,8 @@ impl Curve {
         let middle = path.at(at);
         let [first, second] = shapes;
         [
-            Curve { start: self.start, end: middle, shape: first },
-            Curve { start: middle, end: self.end, shape: second },
+            FileCurve { start: self.start, end: middle, shape: first },
+            FileCurve { start: middle, end: self.end, shape: second },
         ]
     }
 }

@@ -1,9 +1,9 @@
 //! The edges of a piece as the curves of the format, cut where seams need it.
 
-use super::curve::Curve;
+use super::curve::FileCurve;
 use super::fit::fitted;
 use crate::flatten::flatten;
-use crate::parts::{Part, parts};
+use crate::parts::{EdgePart, parts};
 use toile_core::artifact::{EdgeCurve, PatternLoop};
 
 /// A polyline becomes curves that leave it by no more than this, metres.
@@ -14,7 +14,7 @@ const SHORT: f64 = 1e-4;
 const NOTHING: f64 = 1e-8;
 
 /// For each edge of a loop the curves that it becomes.
-pub(super) fn curves(l: &PatternLoop) -> Vec<Vec<Curve>> {
+pub(super) fn curves(l: &PatternLoop) -> Vec<Vec<FileCurve>> {
     let mut out = vec![Vec::new(); l.edges.len()];
     for part in parts(l, |chord, length| chord <= NOTHING || chord <= SHORT * length) {
         out[part.edge].extend(one(part));
@@ -22,13 +22,15 @@ pub(super) fn curves(l: &PatternLoop) -> Vec<Vec<Curve>> {
     out
 }
 
-fn one(part: Part) -> Vec<Curve> {
-    let Part { start, end, curve, .. } = part;
+fn one(part: EdgePart) -> Vec<FileCurve> {
+    let EdgePart { start, end, curve, .. } = part;
     match &curve {
         EdgeCurve::Polyline { .. } => fitted(&flatten(start, end, &curve, FIT), FIT),
-        EdgeCurve::Arc { bulge } if bulge.abs() < 1e-12 => vec![Curve { start, end, shape: EdgeCurve::Line }],
+        EdgeCurve::Arc { bulge } if bulge.abs() < 1e-12 => {
+            vec![FileCurve { start, end, shape: EdgeCurve::Line }]
+        }
         EdgeCurve::Line | EdgeCurve::Quadratic { .. } | EdgeCurve::Cubic { .. } | EdgeCurve::Arc { .. } => {
-            vec![Curve { start, end, shape: curve }]
+            vec![FileCurve { start, end, shape: curve }]
         }
     }
 }

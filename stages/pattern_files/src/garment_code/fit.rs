@@ -8,7 +8,7 @@
 //! point. Cost: points squared, a millisecond for a hundred. Limits: curves that follow each other
 //! meet without a gap, but their directions may differ a little there.
 
-use super::curve::Curve;
+use super::curve::FileCurve;
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv};
 use nalgebra::{Matrix4, Vector4};
 use toile_core::artifact::{EdgeCurve, Point2, Vector2};
@@ -28,7 +28,7 @@ const FINE: usize = 600;
 
 /// The curves of a line through these points, at least two; they leave it by no more than
 /// `tolerance`, metres.
-pub(super) fn fitted(points: &[Point2], tolerance: f64) -> Vec<Curve> {
+pub(super) fn fitted(points: &[Point2], tolerance: f64) -> Vec<FileCurve> {
     let mut points: Vec<Point2> = points.to_vec();
     points.dedup();
     let mut out = Vec::new();
@@ -47,9 +47,9 @@ fn turns(p: &[Point2]) -> bool {
     u.perp(&v).atan2(u.dot(&v)).abs() > CORNER.to_radians()
 }
 
-fn run(points: &[Point2], tolerance: f64, out: &mut Vec<Curve>) {
+fn run(points: &[Point2], tolerance: f64, out: &mut Vec<FileCurve>) {
     let [Some(&start), Some(&end)] = [points.first(), points.last()] else { return };
-    let straight = |start, end| Curve { start, end, shape: EdgeCurve::Line };
+    let straight = |start, end| FileCurve { start, end, shape: EdgeCurve::Line };
     if is_straight(points, tolerance / 4.0) {
         return out.push(straight(start, end));
     }
@@ -61,7 +61,7 @@ fn run(points: &[Point2], tolerance: f64, out: &mut Vec<Curve>) {
             let (worst, at) = distance(points, &c);
             if worst <= tolerance {
                 let shape = EdgeCurve::Cubic { controls: [c.p1, c.p2].map(|p| Point2::new(p.x, p.y)) };
-                return out.push(Curve { start, end, shape });
+                return out.push(FileCurve { start, end, shape });
             }
             (worst, at)
         }

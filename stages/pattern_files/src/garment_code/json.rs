@@ -1,6 +1,6 @@
 //! The fields of the file, in the order in which GarmentCode writes them.
 
-use super::curve::Curve;
+use super::curve::FileCurve;
 use serde::{Serialize, Serializer};
 use toile_core::artifact::{EdgeCurve, Point2, Vector2};
 
@@ -22,15 +22,15 @@ impl<T: Serialize> Serialize for InOrder<'_, T> {
 /// that is drawn has none.
 #[derive(Serialize)]
 pub(super) struct File<'a> {
-    pattern: Body<'a>,
+    pattern: JsonPattern<'a>,
     parameters: InOrder<'a, ()>,
     parameter_order: [&'a str; 0],
     properties: Properties,
 }
 
 #[derive(Serialize)]
-struct Body<'a> {
-    panels: InOrder<'a, Panel<'a>>,
+struct JsonPattern<'a> {
+    panels: InOrder<'a, JsonPanel<'a>>,
     stitches: Vec<Sewn<'a>>,
     panel_order: Vec<&'a str>,
 }
@@ -45,19 +45,19 @@ struct Properties {
 
 /// A piece.
 #[derive(Serialize)]
-pub(super) struct Panel<'a> {
+pub(super) struct JsonPanel<'a> {
     pub translation: [f64; 3],
     /// Euler angles, degrees.
     pub rotation: [f64; 3],
     pub vertices: Vec<[f64; 2]>,
-    pub edges: Vec<Edge>,
+    pub edges: Vec<JsonEdge>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label: Option<&'a str>,
 }
 
 /// An edge of a panel.
 #[derive(Serialize)]
-pub(super) struct Edge {
+pub(super) struct JsonEdge {
     endpoints: [usize; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
     curvature: Option<Curvature>,
@@ -73,19 +73,19 @@ pub(super) struct Edge {
 struct Curvature {
     #[serde(rename = "type")]
     kind: &'static str,
-    params: Params,
+    params: CurvatureParams,
 }
 
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Params {
+enum CurvatureParams {
     Points(Vec<[f64; 2]>),
     Circle(f64, u8, u8),
 }
 
 /// A side of a stitch.
 #[derive(Serialize)]
-pub(super) struct Side<'a> {
+pub(super) struct StitchSide<'a> {
     pub panel: &'a str,
     pub edge: usize,
 }
@@ -94,19 +94,19 @@ pub(super) struct Side<'a> {
 #[derive(Serialize)]
 #[serde(untagged)]
 pub(super) enum Sewn<'a> {
-    Plain([Side<'a>; 2]),
-    RightWrong(Side<'a>, Side<'a>, &'static str),
+    Plain([StitchSide<'a>; 2]),
+    RightWrong(StitchSide<'a>, StitchSide<'a>, &'static str),
 }
 
 impl<'a> Sewn<'a> {
-    pub(super) fn new([a, b]: [Side<'a>; 2], right_wrong: bool) -> Self {
+    pub(super) fn new([a, b]: [StitchSide<'a>; 2], right_wrong: bool) -> Self {
         if right_wrong { Sewn::RightWrong(a, b, "right_wrong") } else { Sewn::Plain([a, b]) }
     }
 }
 
 impl<'a> File<'a> {
     pub(super) fn new(
-        panels: InOrder<'a, Panel<'a>>,
+        panels: InOrder<'a, JsonPanel<'a>>,
         stitches: Vec<Sewn<'a>>,
         panel_order: Vec<&'a str>,
     ) -> Self {
@@ -117,7 +117,12 @@ impl<'a> File<'a> {
             units_in_meter: UNITS,
         };
         let (parameters, parameter_order) = (InOrder(Vec::new()), []);
-        File { pattern: Body { panels, stitches, panel_order }, parameters, parameter_order, properties }
+        File {
+            pattern: JsonPattern { panels, stitches, panel_order },
+            parameters,
+            parameter_order,
+            properties,
+        }
     }
 
     pub(super) fn text(&self) -> String {
@@ -126,9 +131,9 @@ impl<'a> File<'a> {
     }
 }
 
-impl Edge {
-    pub(super) fn new(endpoints: [usize; 2], curve: &Curve, label: Option<String>) -> Self {
-        Edge { endpoints, curvature: curvature(curve), label, name: None }
+impl JsonEdge {
+    pub(super) fn new(endpoints: [usize; 2], curve: &FileCurve, label: Option<String>) -> Self {
+        JsonEdge { endpoints, curvature: curvature(curve), label, name: None }
     }
 
     /// What it is called.
@@ -142,9 +147,9 @@ impl Edge {
     }
 }
 
-fn curvature(curve: &Curve) -> Option<Curvature> {
+fn curvature(curve: &FileCurve) -> Option<Curvature> {
     let points = |kind, controls: &[Point2]| {
-        let params = Params::Points(controls.iter().map(|c| relative(curve, *c)).collect());
+        let params = CurvatureParams::Points(controls.iter().map(|c| relative(curve, *c)).collect());
         Some(Curvature { kind, params })
     };
     match &curve.shape {
@@ -152,15 +157,18 @@ fn curvature(curve: &Curve) -> Option<Curvature> {
         EdgeCurve::Quadratic { control } => points("quadratic", &[*control]),
         EdgeCurve::Cubic { controls } => points("cubic", controls),
         EdgeCurve::Arc { bulge } => {
-            let params =
-                Params::Circle(radius(curve, *bulge), u8::from(bulge.abs() > 1.0), u8::from(*bulge > 0.0));
+            let params = CurvatureParams::Circle(
+                radius(curve, *bulge),
+                u8::from(bulge.abs() > 1.0),
+                u8::from(*bulge > 0.0),
+            );
             Some(Curvature { kind: "circle", params })
         }
     }
 }
 
 /// A control point along the chord and to its left, both as shares of the chord.
-fn relative(curve: &Curve, c: Point2) -> [f64; 2] {
+fn relative(curve: &FileCurve, c: Point2) -> [f64; 2] {
     let chord = curve.end - curve.start;
     let (to, square) = (c - curve.start, chord.norm_squared());
     [to.dot(&chord) / square, chord.perp(&to) / square]
@@ -168,7 +176,7 @@ fn relative(curve: &Curve, c: Point2) -> [f64; 2] {
 
 /// The radius of an arc in the file's units. Near a half circle the last bits of it decide: of its
 /// neighbours the number is taken from which a reader finds the bulge again.
-fn radius(curve: &Curve, bulge: f64) -> f64 {
+fn radius(curve: &FileCurve, bulge: f64) -> f64 {
     let at = |p: Point2| p * UNITS;
     let chord: Vector2 = at(curve.end) - at(curve.start);
     let chord = chord.norm();

@@ -21,8 +21,8 @@ use crate::error::{WriteError, writable};
 use crate::names::{FileNames, PieceNames, unique};
 use crate::sidecar;
 use crate::written::Written;
-use curve::Curve;
-use json::{Edge, File, InOrder, Panel, Sewn, Side};
+use curve::FileCurve;
+use json::{File, InOrder, JsonEdge, JsonPanel, Sewn, StitchSide};
 use std::collections::BTreeSet;
 use toile_core::artifact::{BodyPart, Pattern, Piece, Pose};
 
@@ -40,7 +40,8 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.15..=5.0;
 pub fn to_json(pattern: &Pattern) -> Result<Written, WriteError> {
     writable(pattern)?;
     let (mut notes, mut warnings) = (left_out(&pattern.pieces), Vec::new());
-    let mut drawn: stitches::Curves = pattern.pieces.iter().map(|p| curves::curves(&p.outer)).collect();
+    let mut drawn: stitches::CurvesOfEdges =
+        pattern.pieces.iter().map(|p| curves::curves(&p.outer)).collect();
     let sewn = stitches::stitches(pattern, &mut drawn, &mut warnings);
     let poses = places::poses(&pattern.pieces, &drawn, &sewn, &mut notes);
     let mut names = FileNames::default();
@@ -57,7 +58,7 @@ pub fn to_json(pattern: &Pattern) -> Result<Written, WriteError> {
     };
     labelled_alike(&mut panels, sewn.iter().map(|s| s.sides.map(number)));
     let stitches = sewn.iter().map(|s| {
-        let side = |(piece, edge): (usize, usize)| Side { panel: &pattern.pieces[piece].name, edge };
+        let side = |(piece, edge): (usize, usize)| StitchSide { panel: &pattern.pieces[piece].name, edge };
         Sewn::new(s.sides.map(|s| side(number(s))), s.right_wrong)
     });
     let order = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
@@ -69,7 +70,7 @@ pub fn to_json(pattern: &Pattern) -> Result<Written, WriteError> {
 
 /// Takes the labels from the edges of stitches whose sides are called differently: GarmentCode
 /// refuses those.
-fn labelled_alike(panels: &mut [(&str, Panel<'_>)], stitches: impl Iterator<Item = [(usize, usize); 2]>) {
+fn labelled_alike(panels: &mut [(&str, JsonPanel<'_>)], stitches: impl Iterator<Item = [(usize, usize); 2]>) {
     for sides in stitches {
         let [a, b] = sides.map(|(panel, edge)| panels[panel].1.edges[edge].called().map(str::to_owned));
         if a.is_some() && b.is_some() && a != b {
@@ -110,7 +111,7 @@ fn size(pieces: &[Piece], told: &mut Vec<String>) {
 }
 
 /// A piece as a panel, and the names of its edges in the file.
-fn panel<'a>(p: &'a Piece, curves: &[Vec<Curve>], pose: &Pose) -> (Panel<'a>, PieceNames) {
+fn panel<'a>(p: &'a Piece, curves: &[Vec<FileCurve>], pose: &Pose) -> (JsonPanel<'a>, PieceNames) {
     let whole = |e: usize| curves[e].len() == 1;
     // Names of edges that stay whole are kept; those of parts must differ from them.
     let mut taken: BTreeSet<String> =
@@ -129,12 +130,12 @@ fn panel<'a>(p: &'a Piece, curves: &[Vec<Curve>], pose: &Pose) -> (Panel<'a>, Pi
             let i = edges.len();
             vertices.push([curve.start.x * json::UNITS, curve.start.y * json::UNITS]);
             let label = (*name != format!("edge_{i}")).then(|| name.clone());
-            edges.push(Edge::new([i, (i + 1) % count], curve, label));
+            edges.push(JsonEdge::new([i, (i + 1) % count], curve, label));
         }
         names.edges.insert(own.clone(), named);
     }
     let pose = pose::squared(pose);
-    let panel = Panel {
+    let panel = JsonPanel {
         translation: pose.origin.coords.map(|c| c * json::UNITS).into(),
         rotation: pose::angles(&pose),
         vertices,

@@ -8,7 +8,7 @@
 //! stitches. Limits: there may be no such turn; and the places are no garment around a body, which
 //! is told.
 
-use super::stitches::{Curves, Stitch};
+use super::stitches::{CurveStitch, CurvesOfEdges};
 use toile_core::artifact::{Piece, Point3, Pose, Vector2, Vector3};
 
 /// Between pieces that have no place, metres.
@@ -24,8 +24,8 @@ const ROUNDS: usize = 4;
 /// The place of each piece; that some have none is told.
 pub(super) fn poses(
     pieces: &[Piece],
-    curves: &Curves,
-    stitches: &[Stitch],
+    curves: &CurvesOfEdges,
+    stitches: &[CurveStitch],
     notes: &mut Vec<String>,
 ) -> Vec<Pose> {
     let missing = pieces.iter().filter(|p| p.pose.is_none()).count();
@@ -49,14 +49,14 @@ pub(super) fn poses(
 
 /// A stitch between two pieces: the directions of its edges, the second turned around where starts
 /// meet ends do.
-struct Chord {
+struct StitchDirections {
     pieces: [usize; 2],
     ways: [Vector2; 2],
 }
 
 /// The stitches whose directions readers look at.
-fn chords(curves: &Curves, stitches: &[Stitch]) -> Vec<Chord> {
-    let one = |s: &Stitch| {
+fn chords(curves: &CurvesOfEdges, stitches: &[CurveStitch]) -> Vec<StitchDirections> {
+    let one = |s: &CurveStitch| {
         let way = |(piece, edge, k): (usize, usize, usize)| {
             let c = &curves[piece][edge][k];
             c.end - c.start
@@ -64,19 +64,23 @@ fn chords(curves: &Curves, stitches: &[Stitch]) -> Vec<Chord> {
         let [a, b] = s.sides.map(way);
         let looked = a.norm().min(b.norm()) > SHORT && s.sides[0].0 != s.sides[1].0;
         let b = if s.right_wrong { -b } else { b };
-        looked.then(|| Chord { pieces: s.sides.map(|side| side.0), ways: [a.normalize(), b.normalize()] })
+        looked.then(|| StitchDirections {
+            pieces: s.sides.map(|side| side.0),
+            ways: [a.normalize(), b.normalize()],
+        })
     };
     stitches.iter().filter_map(one).collect()
 }
 
 /// The poses of all pieces; those without a place are turned, and stand at the origin.
-fn turned(pieces: &[Piece], chords: &[Chord]) -> Vec<Pose> {
+fn turned(pieces: &[Piece], chords: &[StitchDirections]) -> Vec<Pose> {
     let turns = turns();
     let mut found: Vec<Option<Pose>> = pieces.iter().map(|p| p.pose).collect();
     let open: Vec<usize> = (0..pieces.len()).filter(|&k| pieces[k].pose.is_none()).collect();
     let joined = |found: &[Option<Pose>], k: usize| {
-        let other =
-            |c: &&Chord| c.pieces.contains(&k) && c.pieces.iter().any(|p| *p != k && found[*p].is_some());
+        let other = |c: &&StitchDirections| {
+            c.pieces.contains(&k) && c.pieces.iter().any(|p| *p != k && found[*p].is_some())
+        };
         chords.iter().filter(other).count()
     };
     for _ in 0..open.len() {
@@ -95,10 +99,10 @@ fn turned(pieces: &[Piece], chords: &[Chord]) -> Vec<Pose> {
 }
 
 /// The first of the turns with which the fewest stitches of a piece run against the others' places.
-fn best(k: usize, turns: &[Pose], found: &[Option<Pose>], chords: &[Chord]) -> Option<Pose> {
+fn best(k: usize, turns: &[Pose], found: &[Option<Pose>], chords: &[StitchDirections]) -> Option<Pose> {
     let in_space = |pose: &Pose, way: Vector2| pose.across * way.x + pose.along * way.y;
     let against = |turn: &Pose| {
-        let of = |c: &&Chord| {
+        let of = |c: &&StitchDirections| {
             let pose = |p: usize| if p == k { Some(*turn) } else { found[p] };
             let [a, b] = [0, 1].map(|i| pose(c.pieces[i]).map(|pose| in_space(&pose, c.ways[i])));
             a.zip(b).is_some_and(|(a, b)| a.dot(&b) > AGAINST)

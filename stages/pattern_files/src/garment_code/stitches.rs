@@ -6,7 +6,7 @@
 //! of three sides, none along a line inside a piece, and no edge in two of them; such a seam is
 //! left out, which is told.
 
-use super::curve::Curve;
+use super::curve::FileCurve;
 use std::collections::BTreeSet;
 use toile_core::artifact::{EdgeUse, Pattern, PatternSeam, SeamKind, lacking_stops};
 
@@ -16,13 +16,13 @@ const NEAR: f64 = 2e-3;
 const NEAR_SHARE: f64 = 0.01;
 
 /// The curves of each edge of each piece.
-pub(super) type Curves = Vec<Vec<Vec<Curve>>>;
+pub(super) type CurvesOfEdges = Vec<Vec<Vec<FileCurve>>>;
 /// An edge of a piece, both by their numbers, and whether a side runs along it from its end.
-type Link = (usize, usize, bool);
+type EdgeLink = (usize, usize, bool);
 
 /// A stitch between two curves: piece, edge, and which of the edge's curves.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Stitch {
+pub(super) struct CurveStitch {
     pub sides: [(usize, usize, usize); 2],
     /// Whether start meets start.
     pub right_wrong: bool,
@@ -30,9 +30,13 @@ pub(super) struct Stitch {
 
 /// The stitches of all seams that the format holds; curves are cut for them, and what is left out
 /// is told.
-pub(super) fn stitches(pattern: &Pattern, curves: &mut Curves, told: &mut Vec<String>) -> Vec<Stitch> {
+pub(super) fn stitches(
+    pattern: &Pattern,
+    curves: &mut CurvesOfEdges,
+    told: &mut Vec<String>,
+) -> Vec<CurveStitch> {
     let mut sewn = BTreeSet::new();
-    let mut kept: Vec<(&PatternSeam, [Vec<Link>; 2])> = Vec::new();
+    let mut kept: Vec<(&PatternSeam, [Vec<EdgeLink>; 2])> = Vec::new();
     for seam in &pattern.seams {
         match sides(pattern, seam, &mut sewn) {
             Ok(sides) => kept.push((seam, sides)),
@@ -51,7 +55,7 @@ fn sides(
     pattern: &Pattern,
     seam: &PatternSeam,
     sewn: &mut BTreeSet<(usize, usize)>,
-) -> Result<[Vec<Link>; 2], String> {
+) -> Result<[Vec<EdgeLink>; 2], String> {
     let [a, b] = &seam.sides[..] else {
         return Err(format!("it has {} sides, a stitch has 2", seam.sides.len()));
     };
@@ -60,7 +64,7 @@ fn sides(
         let found = i.and_then(|i| Some((i, pattern.pieces[i].edge_number(&u.edge.edge)?, u.reversed)));
         found.ok_or_else(|| format!("{} is a line inside its piece, a stitch joins outer edges", u.edge))
     };
-    let links = |side: &[EdgeUse]| side.iter().map(link).collect::<Result<Vec<Link>, String>>();
+    let links = |side: &[EdgeUse]| side.iter().map(link).collect::<Result<Vec<EdgeLink>, String>>();
     let sides = [links(a)?, links(b)?];
     let mut mine = BTreeSet::new();
     for (u, link) in a.iter().chain(b).zip(sides.iter().flatten()) {
@@ -73,7 +77,7 @@ fn sides(
 }
 
 /// Tells kinds of seams that are lost.
-fn kinds(kept: &[(&PatternSeam, [Vec<Link>; 2])], told: &mut Vec<String>) {
+fn kinds(kept: &[(&PatternSeam, [Vec<EdgeLink>; 2])], told: &mut Vec<String>) {
     let lost = |k: SeamKind| !matches!(k, SeamKind::Matched | SeamKind::Dart | SeamKind::Gathered);
     let names: Vec<String> = kept
         .iter()
@@ -86,7 +90,7 @@ fn kinds(kept: &[(&PatternSeam, [Vec<Link>; 2])], told: &mut Vec<String>) {
 }
 
 /// Cuts the curves of either side where only the other has an end of one.
-fn agree(curves: &mut Curves, a: &[Link], b: &[Link]) {
+fn agree(curves: &mut CurvesOfEdges, a: &[EdgeLink], b: &[EdgeLink]) {
     let [(sa, la), (sb, lb)] = [stops(curves, a), stops(curves, b)];
     let near = (NEAR / la.min(lb)).max(NEAR_SHARE);
     let (in_b, in_a) = lacking_stops(&sa, &sb, near);
@@ -96,7 +100,7 @@ fn agree(curves: &mut Curves, a: &[Link], b: &[Link]) {
 
 /// A curve as a link of a side.
 #[derive(Debug, Clone, Copy)]
-struct Step {
+struct CurveLink {
     piece: usize,
     edge: usize,
     /// Which of the edge's curves.
@@ -106,22 +110,22 @@ struct Step {
 }
 
 /// The curves of a side, in its order.
-fn chain(curves: &Curves, side: &[Link]) -> Vec<Step> {
+fn chain(curves: &CurvesOfEdges, side: &[EdgeLink]) -> Vec<CurveLink> {
     let mut out = Vec::new();
     for &(piece, edge, reversed) in side {
         let n = curves[piece][edge].len();
         let number = |k: usize| if reversed { n - 1 - k } else { k };
-        out.extend((0..n).map(|k| Step { piece, edge, curve: number(k), reversed }));
+        out.extend((0..n).map(|k| CurveLink { piece, edge, curve: number(k), reversed }));
     }
     out
 }
 
-fn length(curves: &Curves, s: &Step) -> f64 {
+fn length(curves: &CurvesOfEdges, s: &CurveLink) -> f64 {
     curves[s.piece][s.edge][s.curve].length()
 }
 
 /// Where the curves of a side meet as shares of its length, ascending, and its length, metres.
-fn stops(curves: &Curves, side: &[Link]) -> (Vec<f64>, f64) {
+fn stops(curves: &CurvesOfEdges, side: &[EdgeLink]) -> (Vec<f64>, f64) {
     let (mut whole, mut stops) = (0.0, Vec::new());
     for step in chain(curves, side) {
         whole += length(curves, &step);
@@ -134,7 +138,7 @@ fn stops(curves: &Curves, side: &[Link]) -> (Vec<f64>, f64) {
 
 /// Cuts the curve of a side at that length from the side's start, metres; never at an end of a
 /// curve.
-fn cut(curves: &mut Curves, side: &[Link], at: f64) {
+fn cut(curves: &mut CurvesOfEdges, side: &[EdgeLink], at: f64) {
     let mut before = 0.0;
     for step in chain(curves, side) {
         let length = length(curves, &step);
@@ -152,8 +156,10 @@ fn cut(curves: &mut Curves, side: &[Link], at: f64) {
 }
 
 /// The curves of both sides, one to one.
-fn paired(curves: &Curves, a: &[Link], b: &[Link]) -> Vec<Stitch> {
-    let at = |s: &Step| (s.piece, s.edge, s.curve);
+fn paired(curves: &CurvesOfEdges, a: &[EdgeLink], b: &[EdgeLink]) -> Vec<CurveStitch> {
+    let at = |s: &CurveLink| (s.piece, s.edge, s.curve);
     let pairs = chain(curves, a).into_iter().zip(chain(curves, b));
-    pairs.map(|(x, y)| Stitch { sides: [at(&x), at(&y)], right_wrong: x.reversed == y.reversed }).collect()
+    pairs
+        .map(|(x, y)| CurveStitch { sides: [at(&x), at(&y)], right_wrong: x.reversed == y.reversed })
+        .collect()
 }

@@ -40,7 +40,7 @@ impl Style {
 
 /// Where a text is held: at its start or its middle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Hold {
+pub(super) enum TextAnchor {
     Start,
     Middle,
 }
@@ -51,7 +51,7 @@ pub(super) struct Type {
     /// Its size, mm.
     pub size: f64,
     pub bold: bool,
-    pub hold: Hold,
+    pub hold: TextAnchor,
     /// Whether it runs upwards.
     pub upright: bool,
     pub grey: f64,
@@ -59,14 +59,14 @@ pub(super) struct Type {
 
 impl Type {
     pub(super) const fn plain(size: f64) -> Self {
-        Type { size, bold: false, hold: Hold::Start, upright: false, grey: 0.0 }
+        Type { size, bold: false, hold: TextAnchor::Start, upright: false, grey: 0.0 }
     }
 
     pub(super) const fn bold(size: f64) -> Self {
         Type { bold: true, ..Type::plain(size) }
     }
 
-    pub(super) const fn held(self, hold: Hold) -> Self {
+    pub(super) const fn held(self, hold: TextAnchor) -> Self {
         Type { hold, ..self }
     }
 
@@ -167,8 +167,8 @@ impl Canvas {
     pub(super) fn text(&mut self, [x, y]: [f64; 2], kind: Type, text: &str) {
         let width = font::width(text, kind.size, kind.bold);
         let back = match kind.hold {
-            Hold::Start => 0.0,
-            Hold::Middle => width / 2.0,
+            TextAnchor::Start => 0.0,
+            TextAnchor::Middle => width / 2.0,
         };
         let (matrix, size) = match kind.upright {
             false => ([1.0, 0.0, 0.0, 1.0, (x - back) as f32, y as f32], kind.size as f32),

@@ -1,12 +1,12 @@
 //! The first page: a square to measure, what the lines mean, how the pages are joined. And the
 //! sheet in one piece.
 
-use super::canvas::{Canvas, Hold, SHEET, Style, Type};
-use super::sheet::{CUT, DOTTED, FOLD, SEW, Sheet, THIN};
+use super::canvas::{Canvas, SHEET, Style, TextAnchor, Type};
+use super::sheet::{CUT, DOTTED, FOLD, PatternSheet, SEW, THIN};
 use super::tiles::{OVERLAP, Tiles};
-use super::{Page, Paper};
+use super::{Paper, PdfPage};
 use crate::font::{shortened, wrapped};
-use crate::options::Options;
+use crate::options::DrawingOptions;
 use toile_core::artifact::Pattern;
 
 /// Around what is written, mm.
@@ -23,10 +23,10 @@ pub(super) const LEAST_WIDTH: f64 = SQUARE + 160.0;
 /// The first page.
 pub(super) fn page(
     pattern: &Pattern,
-    sheet: &Sheet<'_>,
+    sheet: &PatternSheet<'_>,
     tiles: Option<&Tiles>,
     paper: Paper,
-    options: &Options,
+    options: &DrawingOptions,
 ) -> Canvas {
     let [w, h] = paper.size();
     let mut canvas = Canvas::page();
@@ -47,7 +47,7 @@ pub(super) fn page(
 }
 
 /// How many pieces and seams, the size and the day.
-fn subtitle(pattern: &Pattern, options: &Options) -> String {
+fn subtitle(pattern: &Pattern, options: &DrawingOptions) -> String {
     let many = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut out = format!("{}, {}", many(pattern.pieces.len(), "piece"), many(pattern.seams.len(), "seam"));
     for (before, value) in [("size ", &options.size), ("", &options.date)] {
@@ -64,13 +64,13 @@ fn square(canvas: &mut Canvas, [x, y]: [f64; 2]) {
     let (right, top) = (x + SQUARE, y + SQUARE);
     canvas.closed(&[[x, y], [right, y], [right, top], [x, top]], Style::solid(0.1));
     let middle = x + SQUARE / 2.0;
-    canvas.text([middle, y + 54.0], Type::bold(5.0).held(Hold::Middle), "100 mm × 100 mm");
+    canvas.text([middle, y + 54.0], Type::bold(5.0).held(TextAnchor::Middle), "100 mm × 100 mm");
     let lines = [
         "Print at 100 % (\"actual size\"), not fitted to the page.",
         "Measure this square before anything is cut.",
     ];
     for (k, line) in lines.iter().enumerate() {
-        canvas.text([middle, y + 46.0 - 5.0 * k as f64], Type::plain(3.4).held(Hold::Middle), line);
+        canvas.text([middle, y + 46.0 - 5.0 * k as f64], Type::plain(3.4).held(TextAnchor::Middle), line);
     }
 }
 
@@ -103,7 +103,7 @@ fn legend(canvas: &mut Canvas, [x, top]: [f64; 2], right: f64) {
     canvas.text([words, y], Type::plain(3.2), "notch");
     y -= 8.0;
     canvas.circle([x + 9.0, y + 1.1], 2.8, Style::solid(0.2));
-    canvas.text([x + 9.0, y - 0.15], Type::bold(3.5).held(Hold::Middle), "3");
+    canvas.text([x + 9.0, y - 0.15], Type::bold(3.5).held(TextAnchor::Middle), "3");
     let told = ["number of a seam: edges", "with the same number", "are sewn together"];
     for (k, line) in told.iter().enumerate() {
         canvas.text([words, y + 1.0 - 4.2 * k as f64], Type::plain(3.2), line);
@@ -127,7 +127,7 @@ fn advice(canvas: &mut Canvas, [x, y]: [f64; 2], width: f64, joined: bool) -> f6
 }
 
 /// The sheet in small with its pages, in that room from its lower left corner.
-fn map(canvas: &mut Canvas, sheet: &Sheet<'_>, tiles: &Tiles, [x, y]: [f64; 2], [w, h]: [f64; 2]) {
+fn map(canvas: &mut Canvas, sheet: &PatternSheet<'_>, tiles: &Tiles, [x, y]: [f64; 2], [w, h]: [f64; 2]) {
     let whole = [tiles.columns as f64 * tiles.step[0], tiles.rows as f64 * tiles.step[1]];
     let scale = (w / whole[0]).min(h / whole[1]);
     let (left, low) = (x + (w - whole[0] * scale) / 2.0, y + h - whole[1] * scale);
@@ -148,12 +148,16 @@ fn map(canvas: &mut Canvas, sheet: &Sheet<'_>, tiles: &Tiles, [x, y]: [f64; 2], 
         let (lo, hi) = tiles.part((*row, *column));
         let at = to([f64::midpoint(lo.x, hi.x), f64::midpoint(lo.y, hi.y)]);
         let text = format!("{} / {}", row + 1, column + 1);
-        canvas.text([at[0], at[1] - size * 0.35], Type::bold(size).held(Hold::Middle).grey(0.45), &text);
+        canvas.text(
+            [at[0], at[1] - size * 0.35],
+            Type::bold(size).held(TextAnchor::Middle).grey(0.45),
+            &text,
+        );
     }
 }
 
 /// The whole sheet as one page, a square and the name above the pieces.
-pub(super) fn whole(pattern: &Pattern, sheet: &Sheet<'_>) -> Page {
+pub(super) fn whole(pattern: &Pattern, sheet: &PatternSheet<'_>) -> PdfPage {
     let [w, h] = sheet.size;
     let size = [w, h + HEAD];
     let mut canvas = Canvas::page();
@@ -168,5 +172,5 @@ pub(super) fn whole(pattern: &Pattern, sheet: &Sheet<'_>) -> Page {
         Type::plain(5.0).grey(0.3),
         &format!("{} pieces", pattern.pieces.len()),
     );
-    Page { size, canvas }
+    PdfPage { size, canvas }
 }

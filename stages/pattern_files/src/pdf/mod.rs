@@ -19,11 +19,11 @@ mod tiles;
 use crate::allowance::cut_lines;
 use crate::error::{WriteError, writable};
 use crate::font;
-use crate::options::Options;
+use crate::options::DrawingOptions;
 use crate::written::Written;
 use canvas::{Canvas, POINTS};
 use pdf_writer::{Chunk, Finish, Name, Pdf, Rect, Ref, TextStr};
-use sheet::Sheet;
+use sheet::PatternSheet;
 use tiles::Tiles;
 use toile_core::artifact::Pattern;
 
@@ -57,7 +57,7 @@ impl Paper {
 }
 
 /// A page: its size, mm, and what is drawn on it.
-struct Page {
+struct PdfPage {
     size: [f64; 2],
     canvas: Canvas,
 }
@@ -67,10 +67,10 @@ struct Page {
 /// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
 /// [`FARTHEST`](crate::FARTHEST); a seam allowance that cannot be cut; more than [`MOST_PAGES`]
 /// pages; a sheet in one piece that is longer than 5.08 m.
-pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &Options) -> Result<Written, WriteError> {
+pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &DrawingOptions) -> Result<Written, WriteError> {
     writable(pattern)?;
     let cut = cut_lines(pattern, &options.allowances)?;
-    let mut sheet = Sheet::new(pattern, &cut, options);
+    let mut sheet = PatternSheet::new(pattern, &cut, options);
     let tiles = match paper {
         Paper::OnePiece => {
             one_piece(&mut sheet)?;
@@ -84,12 +84,13 @@ pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &Options) -> Result<Writ
     let mut drawing = Canvas::drawing();
     sheet.draw(&mut drawing);
     let size = paper.size();
-    let mut pages = vec![Page { size, canvas: front::page(pattern, &sheet, tiles.as_ref(), paper, options) }];
+    let mut pages =
+        vec![PdfPage { size, canvas: front::page(pattern, &sheet, tiles.as_ref(), paper, options) }];
     let order = order::pages(pattern, &sheet, &cut.widths, size);
-    pages.extend(order.into_iter().map(|canvas| Page { size, canvas }));
+    pages.extend(order.into_iter().map(|canvas| PdfPage { size, canvas }));
     match &tiles {
         Some(tiles) => {
-            let page = |at: &(usize, usize)| Page { size, canvas: tiles.draw(*at, &pattern.name) };
+            let page = |at: &(usize, usize)| PdfPage { size, canvas: tiles.draw(*at, &pattern.name) };
             pages.extend(tiles.pages.iter().map(page));
         }
         None => pages.push(front::whole(pattern, &sheet)),
@@ -101,7 +102,7 @@ pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &Options) -> Result<Writ
 }
 
 /// Lays the pieces on one sheet, the narrowest that is short enough.
-fn one_piece(sheet: &mut Sheet<'_>) -> Result<(), WriteError> {
+fn one_piece(sheet: &mut PatternSheet<'_>) -> Result<(), WriteError> {
     let mut fault = WriteError::NoPieces;
     for width in WIDTHS {
         sheet.lay(width, front::BORDER);
@@ -126,7 +127,7 @@ fn unknown_letters(pattern: &Pattern) -> Option<String> {
 }
 
 /// The file: both fonts, the sheet as a drawing that pages share, and the pages.
-fn document(name: &str, pages: Vec<Page>, drawing: Canvas, size: [f64; 2]) -> Vec<u8> {
+fn document(name: &str, pages: Vec<PdfPage>, drawing: Canvas, size: [f64; 2]) -> Vec<u8> {
     let [catalog, tree, plain, bold, sheet, info] = [1, 2, 3, 4, 5, 6].map(Ref::new);
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(tree);

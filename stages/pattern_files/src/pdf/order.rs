@@ -1,8 +1,8 @@
 //! The pages with what is cut and in what order it is sewn.
 
-use super::canvas::{Canvas, Hold, Style, Type};
+use super::canvas::{Canvas, Style, TextAnchor, Type};
 use super::front::MARGIN;
-use super::sheet::{Sheet, allowance};
+use super::sheet::{PatternSheet, allowance};
 use crate::font::wrapped;
 use toile_core::artifact::{EdgeUse, Pattern, PatternSeam, SeamKind};
 
@@ -22,7 +22,7 @@ struct Table {
 /// The pages, of that size, mm.
 pub(super) fn pages(
     pattern: &Pattern,
-    sheet: &Sheet<'_>,
+    sheet: &PatternSheet<'_>,
     widths: &[Vec<f64>],
     size: [f64; 2],
 ) -> Vec<Canvas> {
@@ -35,7 +35,7 @@ pub(super) fn pages(
     out.done
 }
 
-fn cutting(pattern: &Pattern, sheet: &Sheet<'_>, widths: &[Vec<f64>]) -> Table {
+fn cutting(pattern: &Pattern, sheet: &PatternSheet<'_>, widths: &[Vec<f64>]) -> Table {
     let row = |(k, [w, h]): (usize, [f64; 2])| {
         let p = &pattern.pieces[k];
         let allowance = allowance(&widths[k]).replace("seam allowance ", "");
@@ -168,7 +168,7 @@ impl Pages {
             let fits = ((height - 1.4) / LINE).round() as usize;
             for (k, line) in cell.iter().take(fits).enumerate() {
                 let at = [*x, self.y - SIZE - LINE * k as f64];
-                self.canvas.text(at, Type::plain(SIZE).held(Hold::Start), line);
+                self.canvas.text(at, Type::plain(SIZE).held(TextAnchor::Start), line);
             }
         }
         self.y -= height;

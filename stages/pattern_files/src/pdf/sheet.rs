@@ -1,12 +1,12 @@
 //! All pieces on one sheet, in true scale, millimetres, y up from the sheet's lower left corner.
 
-use super::canvas::{Canvas, Hold, Style, Type};
+use super::canvas::{Canvas, Style, TextAnchor, Type};
 use crate::allowance::CutLines;
 use crate::flatten::{flatten, loop_points};
 use crate::inside::{bounds, contains, crosses, upright_parts};
 use crate::label;
 use crate::marks::{self, NotchMark, SeamMark};
-use crate::options::Options;
+use crate::options::DrawingOptions;
 use crate::shelf::pack;
 use toile_core::artifact::{LinePurpose, Pattern, Piece, PieceLine, Point2, Vector2};
 
@@ -31,7 +31,7 @@ const HALF: f64 = 2.0;
 const ARROW: [f64; 2] = [5.0, 1.6];
 
 /// A piece on the sheet.
-pub(super) struct Laid<'a> {
+pub(super) struct LaidPiece<'a> {
     piece: &'a Piece,
     /// What is cut: the cut line, or the outline.
     pub cut: Vec<Point2>,
@@ -43,15 +43,15 @@ pub(super) struct Laid<'a> {
     numbers: Vec<SeamMark>,
     notches: Vec<(NotchMark, f64)>,
     grain: [Point2; 2],
-    words: Vec<label::Line>,
+    words: Vec<label::LabelLine>,
     low: Point2,
     size: [f64; 2],
     corner: [f64; 2],
 }
 
 /// All pieces at their places.
-pub(super) struct Sheet<'a> {
-    pub pieces: Vec<Laid<'a>>,
+pub(super) struct PatternSheet<'a> {
+    pub pieces: Vec<LaidPiece<'a>>,
     /// Width and height, mm.
     pub size: [f64; 2],
 }
@@ -60,15 +60,15 @@ fn mm(p: Point2) -> Point2 {
     p * 1e3
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> PatternSheet<'a> {
     /// The pieces of a pattern, not yet at their places.
-    pub(super) fn new(pattern: &'a Pattern, cut: &CutLines, options: &Options) -> Self {
+    pub(super) fn new(pattern: &'a Pattern, cut: &CutLines, options: &DrawingOptions) -> Self {
         let numbers = marks::seam_marks(pattern);
         let one = |(k, p): (usize, &'a Piece)| {
             let words = words(pattern, p, &cut.widths[k], options);
-            Laid::new(p, cut.lines[k].as_deref(), &cut.widths[k], &numbers[k], words)
+            LaidPiece::new(p, cut.lines[k].as_deref(), &cut.widths[k], &numbers[k], words)
         };
-        Sheet { pieces: pattern.pieces.iter().enumerate().map(one).collect(), size: [0.0; 2] }
+        PatternSheet { pieces: pattern.pieces.iter().enumerate().map(one).collect(), size: [0.0; 2] }
     }
 
     /// The sizes of the pieces, mm.
@@ -125,13 +125,13 @@ impl<'a> Sheet<'a> {
 }
 
 /// What stands on a piece: its name, how often it is cut, the pattern and its size, the allowance.
-fn words(pattern: &Pattern, p: &Piece, widths: &[f64], options: &Options) -> Vec<label::Line> {
+fn words(pattern: &Pattern, p: &Piece, widths: &[f64], options: &DrawingOptions) -> Vec<label::LabelLine> {
     let mut out = vec![(p.name.clone(), 1.0, true), ("cut 1".to_owned(), 0.8, false)];
     let size = if options.size.is_empty() { String::new() } else { format!(", size {}", options.size) };
     out.push((format!("{}{size}", pattern.name), 0.6, false));
     out.push((allowance(widths), 0.6, false));
     out.retain(|(text, _, _)| !text.trim().is_empty());
-    let short = |(text, share, bold): label::Line| (text.chars().take(40).collect(), share, bold);
+    let short = |(text, share, bold): label::LabelLine| (text.chars().take(40).collect(), share, bold);
     out.into_iter().map(short).collect()
 }
 
@@ -149,13 +149,13 @@ pub(super) fn allowance(widths: &[f64]) -> String {
     }
 }
 
-impl<'a> Laid<'a> {
+impl<'a> LaidPiece<'a> {
     fn new(
         p: &'a Piece,
         cut: Option<&[Point2]>,
         widths: &[f64],
         numbers: &[SeamMark],
-        words: Vec<label::Line>,
+        words: Vec<label::LabelLine>,
     ) -> Self {
         let outline = loop_points(&p.outer, TOLERANCE).0;
         let n = p.outer.corners.len();
@@ -167,7 +167,7 @@ impl<'a> Laid<'a> {
         let line = all_mm(cut.unwrap_or(&outline));
         let (low, high) = bounds(&line);
         let width = |n: &NotchMark| if cut.is_some() { widths[n.edge] * 1e3 } else { 0.0 };
-        Laid {
+        LaidPiece {
             piece: p,
             sewn_inside: cut.is_some(),
             edges: (0..n).map(edge).collect(),
@@ -224,7 +224,11 @@ impl<'a> Laid<'a> {
             let [x, y] = self.at(*at);
             canvas.circle([x, y], *r, Style::solid(0.2));
             let size = r * if m.number > 99 { 0.95 } else { 1.25 };
-            canvas.text([x, y - size * 0.36], Type::bold(size).held(Hold::Middle), &m.number.to_string());
+            canvas.text(
+                [x, y - size * 0.36],
+                Type::bold(size).held(TextAnchor::Middle),
+                &m.number.to_string(),
+            );
         }
         self.label(canvas, &circles);
     }
@@ -251,7 +255,7 @@ impl<'a> Laid<'a> {
         let [x, y] = self.at(nalgebra::center(&a, &b));
         let upright = (b.y - a.y).abs() > (b.x - a.x).abs();
         let at = if upright { [x - 1.0, y] } else { [x, y + 1.0] };
-        canvas.text(at, Type::plain(2.4).held(Hold::Middle).upright(upright), word);
+        canvas.text(at, Type::plain(2.4).held(TextAnchor::Middle).upright(upright), word);
     }
 
     /// A line across the allowance and a triangle on the line that is cut, its point inwards.
@@ -274,7 +278,7 @@ impl<'a> Laid<'a> {
         }
         if top.y - foot.y > 30.0 {
             let [x, y] = self.at(nalgebra::center(&foot, &top));
-            canvas.text([x - 1.0, y], Type::plain(2.4).held(Hold::Middle).upright(true), "grain");
+            canvas.text([x - 1.0, y], Type::plain(2.4).held(TextAnchor::Middle).upright(true), "grain");
         }
     }
 
@@ -315,7 +319,7 @@ impl<'a> Laid<'a> {
             down += step;
             let at = if place.upright { [x + down - 0.25 * step, y] } else { [x, y - down + 0.25 * step] };
             let kind = Type { bold: *bold, ..Type::plain(place.size * share) };
-            canvas.text(at, kind.held(Hold::Middle).upright(place.upright), text);
+            canvas.text(at, kind.held(TextAnchor::Middle).upright(place.upright), text);
         }
     }
 }

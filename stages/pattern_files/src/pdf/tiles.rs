@@ -6,8 +6,8 @@
 //! nothing on it is left out.
 
 use super::Paper;
-use super::canvas::{Canvas, Hold, SHEET, Style, Type};
-use super::sheet::Sheet;
+use super::canvas::{Canvas, SHEET, Style, TextAnchor, Type};
+use super::sheet::PatternSheet;
 use toile_core::artifact::Point2;
 
 /// What printers leave white around a page, mm.
@@ -41,7 +41,7 @@ pub(super) struct Tiles {
 impl Tiles {
     /// Lays the pieces so that they need few pages of that paper; how many there would be comes
     /// with it.
-    pub(super) fn lay(sheet: &mut Sheet<'_>, paper: Paper, most: usize) -> Result<Self, usize> {
+    pub(super) fn lay(sheet: &mut PatternSheet<'_>, paper: Paper, most: usize) -> Result<Self, usize> {
         let [w, h] = paper.size();
         let step = [w - 2.0 * MARGIN - OVERLAP, h - 2.0 * MARGIN - OVERLAP];
         let mut best: Option<(usize, f64)> = None;
@@ -67,7 +67,7 @@ impl Tiles {
     }
 
     /// The pages of a sheet that is laid; how many there would be where they are too many.
-    fn of(sheet: &Sheet<'_>, paper: Paper, step: [f64; 2], most: usize) -> Result<Self, usize> {
+    fn of(sheet: &PatternSheet<'_>, paper: Paper, step: [f64; 2], most: usize) -> Result<Self, usize> {
         let [columns, rows] = [0, 1].map(|k| (sheet.size[k] / step[k]).ceil().max(1.0));
         if columns * rows > (EMPTY * most) as f64 {
             return Err((columns * rows).min(1e9) as usize);
@@ -156,11 +156,11 @@ impl Tiles {
         let small = Type::plain(2.4).grey(0.4);
         if self.printed(row, column + 1) {
             let text = format!("row {}, column {} is glued on here", row + 1, column + 2);
-            canvas.text([w - MARGIN - 3.5, h * 0.25], small.upright(true).held(Hold::Middle), &text);
+            canvas.text([w - MARGIN - 3.5, h * 0.25], small.upright(true).held(TextAnchor::Middle), &text);
         }
         if self.printed(row + 1, column) {
             let text = format!("row {}, column {} is glued on here", row + 2, column + 1);
-            canvas.text([w * 0.25, MARGIN + 3.5], small.held(Hold::Middle), &text);
+            canvas.text([w * 0.25, MARGIN + 3.5], small.held(TextAnchor::Middle), &text);
         }
     }
 }
@@ -170,7 +170,7 @@ fn mark(canvas: &mut Canvas, [x, y]: [f64; 2], number: usize, level: bool) {
     canvas.filled(&[[x - MARK, y], [x, y - MARK], [x + MARK, y], [x, y + MARK]], 0.75);
     canvas.line(&[[x - MARK, y], [x + MARK, y]], Style::solid(0.2));
     canvas.line(&[[x, y - MARK], [x, y + MARK]], Style::solid(0.2));
-    let (text, kind) = (number.to_string(), Type::bold(3.0).held(Hold::Middle).grey(0.3));
+    let (text, kind) = (number.to_string(), Type::bold(3.0).held(TextAnchor::Middle).grey(0.3));
     let both = if level { [[x, y + 4.5], [x, y - 6.7]] } else { [[x - 6.0, y - 1.1], [x + 6.0, y - 1.1]] };
     both.into_iter().for_each(|at| canvas.text(at, kind, &text));
 }

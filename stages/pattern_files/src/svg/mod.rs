@@ -20,13 +20,13 @@ use crate::inside::bounds;
 use crate::label;
 use crate::marks::{self, SeamMark};
 use crate::names::{FileNames, PieceNames};
-use crate::options::Options;
-use crate::parts::{Part, parts};
+use crate::options::DrawingOptions;
+use crate::parts::{EdgePart, parts};
 use crate::shelf::pack;
 use crate::sidecar;
 use crate::written::Written;
 use std::collections::BTreeSet;
-use text::{Pen, escaped, number};
+use text::{PieceOnPage, escaped, number};
 use toile_core::artifact::{Pattern, Piece, Point2, Vector2, polygon_area, polyline_length};
 
 /// Between pieces and around all, mm.
@@ -55,7 +55,7 @@ const ARROW: f64 = 5e-3;
 ///
 /// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
 /// [`FARTHEST`](crate::FARTHEST); a seam allowance that cannot be cut.
-pub fn to_svg(pattern: &Pattern, options: &Options) -> Result<Written, WriteError> {
+pub fn to_svg(pattern: &Pattern, options: &DrawingOptions) -> Result<Written, WriteError> {
     writable(pattern)?;
     let cut = cut_lines(pattern, &options.allowances)?;
     let CutLines { lines: cut, notes: mut warnings, .. } = cut;
@@ -69,7 +69,7 @@ pub fn to_svg(pattern: &Pattern, options: &Options) -> Result<Written, WriteErro
         if label != p.name {
             notes.push(format!("piece \"{}\" is called \"{label}\" in the drawing", p.name));
         }
-        let one = Drawn::new(p, cut.as_deref(), numbers, &label);
+        let one = DrawnPiece::new(p, cut.as_deref(), numbers, &label);
         if one.area < LEAST_AREA {
             warnings.push(format!(
                 "piece \"{}\" is smaller than 4 cm2: readers of drawings leave it out",
@@ -101,12 +101,12 @@ fn left_out(pieces: &[Piece]) -> Vec<String> {
 }
 
 /// A piece with all that is drawn of it.
-struct Drawn<'a> {
+struct DrawnPiece<'a> {
     piece: &'a Piece,
     cut: Option<&'a [Point2]>,
     numbers: &'a [SeamMark],
     names: PieceNames,
-    parts: Vec<Part>,
+    parts: Vec<EdgePart>,
     /// Its outline.
     polygon: Vec<Point2>,
     area: f64,
@@ -115,12 +115,12 @@ struct Drawn<'a> {
     high: Point2,
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> DrawnPiece<'a> {
     fn new(p: &'a Piece, cut: Option<&'a [Point2]>, numbers: &'a [SeamMark], label: &str) -> Self {
         let all = parts(&p.outer, |chord, length| chord <= JOINT && length > 4.0 * JOINT);
         let length =
-            |part: &Part| toile_core::artifact::EdgePath::new(part.start, part.end, &part.curve).length();
-        let parts: Vec<Part> = all.into_iter().filter(|part| length(part) > NO_EDGE).collect();
+            |part: &EdgePart| toile_core::artifact::EdgePath::new(part.start, part.end, &part.curve).length();
+        let parts: Vec<EdgePart> = all.into_iter().filter(|part| length(part) > NO_EDGE).collect();
         let count = |k: usize| parts.iter().filter(|part| part.edge == k).count();
         let edges: Vec<(&str, usize)> =
             p.outer.edges.iter().enumerate().map(|(k, e)| (e.name.as_str(), count(k))).collect();
@@ -128,7 +128,7 @@ impl<'a> Drawn<'a> {
         let polygon = loop_points(&p.outer, TOLERANCE).0;
         let area = polygon_area(&polygon);
         let (low, high) = bounds(cut.unwrap_or(&polygon));
-        Drawn { piece: p, cut, numbers, names, parts, polygon, area, low, high }
+        DrawnPiece { piece: p, cut, numbers, names, parts, polygon, area, low, high }
     }
 
     fn size(&self) -> [f64; 2] {
@@ -138,7 +138,7 @@ impl<'a> Drawn<'a> {
     /// Draws it with the lower left corner of its box there, mm, y down.
     fn draw(&self, corner: [f64; 2], size: &str, out: &mut String) {
         let p = self.piece;
-        let pen = Pen { low: self.low, corner };
+        let pen = PieceOnPage { low: self.low, corner };
         let label = escaped(&self.names.piece);
         out.push_str(&format!(
             "<g inkscape:label=\"{label}\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.5\">\n"
@@ -183,7 +183,7 @@ impl<'a> Drawn<'a> {
         out.push_str("</g>\n");
     }
 
-    fn edges(&self, pen: &Pen, out: &mut String) {
+    fn edges(&self, pen: &PieceOnPage, out: &mut String) {
         let dash = if self.cut.is_some() { " stroke-dasharray=\"4 2\"" } else { "" };
         let mut used = std::collections::BTreeMap::new();
         for part in &self.parts {
@@ -200,7 +200,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// How often it is cut, its name and the numbers of its seams.
-    fn words(&self, pen: &Pen, size: &str, out: &mut String) {
+    fn words(&self, pen: &PieceOnPage, size: &str, out: &mut String) {
         let size = if size.is_empty() { String::new() } else { format!(", size {size}") };
         // The reader takes the first text that says how often a piece is cut.
         let words = [(format!("cut 1{size}"), 0.7, false), (self.names.piece.clone(), 1.0, false)];
@@ -251,8 +251,8 @@ fn lines(p: &Piece) -> impl Iterator<Item = &toile_core::artifact::PieceLine> {
 }
 
 /// The page with all pieces.
-fn page(drawn: &[Drawn<'_>], options: &Options) -> String {
-    let sizes: Vec<[f64; 2]> = drawn.iter().map(Drawn::size).collect();
+fn page(drawn: &[DrawnPiece<'_>], options: &DrawingOptions) -> String {
+    let sizes: Vec<[f64; 2]> = drawn.iter().map(DrawnPiece::size).collect();
     let area: f64 = sizes.iter().map(|s| (s[0] + GAP) * (s[1] + GAP)).sum();
     let (places, [width, height]) = pack(&sizes, (area * ASPECT).sqrt(), GAP);
     let mut body = String::new();

@@ -1,6 +1,6 @@
 //! Numbers, names and path data as text of an SVG.
 
-use crate::parts::Part;
+use crate::parts::EdgePart;
 use std::fmt::Write;
 use toile_core::artifact::{EdgeCurve, Point2, Vector2};
 
@@ -33,14 +33,14 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// From a piece's coordinates, metres, to the page's, mm, y down.
-pub(super) struct Pen {
+pub(super) struct PieceOnPage {
     /// The lower left corner of the piece's box.
     pub low: Point2,
     /// Where that lies on the page.
     pub corner: [f64; 2],
 }
 
-impl Pen {
+impl PieceOnPage {
     pub(super) fn at(&self, p: Point2) -> [f64; 2] {
         [self.corner[0] + (p.x - self.low.x) * 1e3, self.corner[1] - (p.y - self.low.y) * 1e3]
     }
@@ -65,7 +65,7 @@ impl Pen {
     }
 
     /// A part of an edge.
-    pub(super) fn curve(&self, part: &Part) -> String {
+    pub(super) fn curve(&self, part: &EdgePart) -> String {
         let (start, end) = (self.point(part.start), self.point(part.end));
         let chord = (part.end - part.start).norm();
         match &part.curve {

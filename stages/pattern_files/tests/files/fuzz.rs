@@ -9,7 +9,7 @@ use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::pdf::{Paper, to_pdf};
 use toile_pattern_files::svg::to_svg;
-use toile_pattern_files::{Options, WriteError};
+use toile_pattern_files::{DrawingOptions, WriteError};
 
 /// Names as people and programs give them, and as nobody does.
 fn name() -> impl Strategy<Value = String> {
@@ -157,7 +157,7 @@ proptest! {
 
     #[test]
     fn whatever_is_drawn_is_written_or_refused(pattern in pattern(), sewn in 0.0..0.05_f64, free in 0.0..0.05_f64) {
-        let options = Options {
+        let options = DrawingOptions {
             allowances: Allowances { sewn, free, ..Allowances::default() },
             size: pattern.name.clone(),
             date: pattern.name.clone(),
@@ -175,7 +175,7 @@ proptest! {
         prop_assert!(sound);
         let (pieces, _) = read_json(&json.bytes);
         prop_assert!(pieces.iter().zip(&pattern.pieces).all(|(a, b)| a.name == b.name));
-        for options in [&options, &Options::default()] {
+        for options in [&options, &DrawingOptions::default()] {
             let svg = to_svg(&pattern, options).unwrap();
             let drawn = read_svg(&svg.bytes);
             prop_assert_eq!(drawn.len(), pattern.pieces.len());

@@ -4,7 +4,7 @@
 use crate::common::*;
 use std::process::Command;
 use toile_core::artifact::*;
-use toile_pattern_files::Options;
+use toile_pattern_files::DrawingOptions;
 use toile_pattern_files::allowance::Allowances;
 use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::pdf::{Paper, to_pdf};
@@ -13,10 +13,10 @@ use toile_pattern_files::pdf::{Paper, to_pdf};
 const DPI: f64 = 300.0;
 const MM: f64 = 25.4 / DPI;
 
-fn allowed() -> Options {
-    Options {
+fn allowed() -> DrawingOptions {
+    DrawingOptions {
         allowances: Allowances { sewn: 0.01, free: 0.02, ..Allowances::default() },
-        ..Options::default()
+        ..DrawingOptions::default()
     }
 }
 
@@ -97,7 +97,7 @@ fn the_square_measures_100_mm_and_pages_join() {
     let edges = ["a", "b", "c", "d"].map(|n| edge(n, EdgeCurve::Line)).into();
     let strip = Piece { name: "strip".into(), outer: PatternLoop { corners, edges }, ..Piece::default() };
     let pattern = Pattern { name: "t".into(), pieces: vec![strip], seams: vec![] };
-    std::fs::write(&file, to_pdf(&pattern, Paper::A4, &Options::default()).unwrap().bytes).unwrap();
+    std::fs::write(&file, to_pdf(&pattern, Paper::A4, &DrawingOptions::default()).unwrap().bytes).unwrap();
     let first = Picture::of(&file, 1);
     // The square begins 15 mm from the left, 41 mm from above.
     let across: Vec<usize> = (0..first.width)

@@ -4,7 +4,7 @@
 use crate::common::*;
 use std::path::PathBuf;
 use toile_core::artifact::*;
-use toile_pattern_files::Options;
+use toile_pattern_files::DrawingOptions;
 use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::svg::to_svg;
@@ -44,7 +44,7 @@ fn outlines_of_real_patterns_come_back() {
     };
     for file in files {
         let pattern = pattern(&file);
-        let options = Options::default();
+        let options = DrawingOptions::default();
         let drawn = [
             read_svg(&to_svg(&pattern, &options).unwrap().bytes),
             read_dxf(&to_dxf(&pattern, Standard::Aama, &options).unwrap().bytes),

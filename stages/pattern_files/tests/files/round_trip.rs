@@ -7,11 +7,11 @@ use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::pdf::{Paper, to_pdf};
 use toile_pattern_files::svg::to_svg;
-use toile_pattern_files::{Options, sidecar};
+use toile_pattern_files::{DrawingOptions, sidecar};
 
-fn allowed() -> Options {
+fn allowed() -> DrawingOptions {
     let allowances = Allowances { sewn: 0.01, free: 0.02, ..Allowances::default() };
-    Options { allowances, size: "M".into(), date: String::new() }
+    DrawingOptions { allowances, size: "M".into(), date: String::new() }
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn a_chain_is_cut_until_its_stitches_join_edge_to_edge() {
 #[test]
 fn outlines_come_back_from_every_drawing_within_a_twentieth_of_a_millimetre() {
     let pattern = blouse();
-    for options in [Options::default(), allowed()] {
+    for options in [DrawingOptions::default(), allowed()] {
         let files = [
             read_svg(&to_svg(&pattern, &options).unwrap().bytes),
             read_dxf(&to_dxf(&pattern, Standard::Aama, &options).unwrap().bytes),
@@ -142,10 +142,10 @@ fn seams_stand_beside_each_file_by_the_names_of_that_file() {
          (name: \"alike\", kind: Matched, sides: [[\"band.left\"], [\"pocket.left\"]]),\n    ],\n)\n"
     );
     // A name with the word `dart` would make a mark of the edge.
-    let svg = to_svg(&pattern, &Options::default()).unwrap().seams;
+    let svg = to_svg(&pattern, &DrawingOptions::default()).unwrap().seams;
     assert!(svg.contains("[\"front.edge_1\"], [\"-front.edge_2\"]"), "{svg}");
     assert!(svg.contains("[\"pocket.hem\"], [\"front.line_1\"]"), "{svg}");
-    let dxf = to_dxf(&pattern, Standard::Aama, &Options::default()).unwrap().seams;
+    let dxf = to_dxf(&pattern, Standard::Aama, &DrawingOptions::default()).unwrap().seams;
     assert!(
         dxf.contains("[\"band.edge_2\"], [\"-back.edge_0\", \"-front.edge_3\", \"-front.edge_0\"]"),
         "{dxf}"
@@ -168,7 +168,7 @@ fn edges_that_readers_cannot_hold_are_halved_or_joined_to_others() {
     let loose = Piece { name: "drop".into(), outer: drop, ..Piece::default() };
     let seam = seam("s", SeamKind::Matched, &[&[("p", "left", false)], &[("drop", "around", true)]]);
     let pattern = Pattern { name: "t".into(), pieces: vec![piece, loose], seams: vec![seam] };
-    let written = to_dxf(&pattern, Standard::Aama, &Options::default()).unwrap();
+    let written = to_dxf(&pattern, Standard::Aama, &DrawingOptions::default()).unwrap();
     let drawn = read_dxf(&written.bytes);
     assert_eq!((drawn[0].1.len(), drawn[1].1.len()), (5, 2));
     for (piece, (_, edges)) in pattern.pieces.iter().zip(&drawn) {
@@ -181,7 +181,7 @@ fn edges_that_readers_cannot_hold_are_halved_or_joined_to_others() {
     );
     let (pieces, stitches) = read_json(&to_json(&pattern).unwrap().bytes);
     assert_eq!((pieces[1].outer.edges.len(), stitches.len()), (3, 2));
-    let drawn = read_svg(&to_svg(&pattern, &Options::default()).unwrap().bytes);
+    let drawn = read_svg(&to_svg(&pattern, &DrawingOptions::default()).unwrap().bytes);
     assert_eq!(drawn[1].1.len(), 3);
 }
 

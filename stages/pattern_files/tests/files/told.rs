@@ -7,7 +7,7 @@ use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::pdf::{Paper, to_pdf};
 use toile_pattern_files::svg::to_svg;
-use toile_pattern_files::{Options, WriteError, sidecar};
+use toile_pattern_files::{DrawingOptions, WriteError, sidecar};
 
 fn two_sided(e: WriteError) -> (String, &'static str) {
     (e.to_string(), e.remedy())
@@ -18,9 +18,9 @@ fn what_no_format_holds_is_refused_by_all() {
     let refused = |pattern: &Pattern| {
         let errors = [
             to_json(pattern).unwrap_err(),
-            to_svg(pattern, &Options::default()).unwrap_err(),
-            to_dxf(pattern, Standard::Aama, &Options::default()).unwrap_err(),
-            to_pdf(pattern, Paper::A4, &Options::default()).unwrap_err(),
+            to_svg(pattern, &DrawingOptions::default()).unwrap_err(),
+            to_dxf(pattern, Standard::Aama, &DrawingOptions::default()).unwrap_err(),
+            to_pdf(pattern, Paper::A4, &DrawingOptions::default()).unwrap_err(),
         ];
         assert!(errors.iter().all(|e| *e == errors[0]));
         two_sided(errors[0].clone())
@@ -52,7 +52,7 @@ fn what_no_format_holds_is_refused_by_all() {
 #[test]
 fn more_paper_than_there_is_is_refused() {
     let large = Pattern { name: "tent".into(), pieces: vec![rectangle("roof", 9.0, 9.0)], seams: vec![] };
-    let options = Options::default();
+    let options = DrawingOptions::default();
     assert_eq!(
         two_sided(to_pdf(&large, Paper::A4, &options).unwrap_err()),
         (
@@ -71,8 +71,10 @@ fn more_paper_than_there_is_is_refused() {
 
 #[test]
 fn allowances_that_cannot_be_cut_are_refused() {
-    let options =
-        Options { allowances: Allowances { sewn: 0.5, ..Allowances::default() }, ..Options::default() };
+    let options = DrawingOptions {
+        allowances: Allowances { sewn: 0.5, ..Allowances::default() },
+        ..DrawingOptions::default()
+    };
     assert_eq!(
         two_sided(to_svg(&blouse(), &options).unwrap_err()),
         (
@@ -89,7 +91,7 @@ fn names_that_a_format_cannot_hold_are_changed_and_told() {
     for (piece, name) in pattern.pieces.iter_mut().zip(["Ärmel <1> \"a\" & b", "fold", "袖.v2", "-x"]) {
         piece.name = name.into();
     }
-    let svg = to_svg(&pattern, &Options::default()).unwrap();
+    let svg = to_svg(&pattern, &DrawingOptions::default()).unwrap();
     let names: Vec<String> = read_svg(&svg.bytes).into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["Ärmel <1> \"a\" & b", "fold of the garment", "袖_v2", "_x"]);
     assert_eq!(
@@ -101,10 +103,10 @@ fn names_that_a_format_cannot_hold_are_changed_and_told() {
         ]
     );
     assert_eq!(svg.notes[3], "piece \"fold\" is called \"fold of the garment\" in the drawing");
-    let dxf = to_dxf(&pattern, Standard::Aama, &Options::default()).unwrap();
+    let dxf = to_dxf(&pattern, Standard::Aama, &DrawingOptions::default()).unwrap();
     let names: Vec<String> = read_dxf(&dxf.bytes).into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["Ärmel <1> \"a\" & b", "fold", "\\U+8896_v2", "_x"]);
-    let pdf = to_pdf(&pattern, Paper::A4, &Options::default()).unwrap();
+    let pdf = to_pdf(&pattern, Paper::A4, &DrawingOptions::default()).unwrap();
     assert_eq!(pdf.warnings, ["1 names have letters that the fonts do not: question marks stand for them"]);
     let (pieces, _) = read_json(&to_json(&pattern).unwrap().bytes);
     assert!(pieces.iter().zip(&pattern.pieces).all(|(a, b)| a.name == b.name));

@@ -18,7 +18,7 @@ use nalgebra::{Point2, Vector2};
 use random::Random;
 use scene::{Scene, through};
 use std::time::Instant;
-use toile_scale::{Found, Object, draw, find};
+use toile_scale::{Found, KnownObject, draw, find};
 
 const KINDS: [&str; 6] = ["card", "a4", "letter", "chess", "ruler mm", "ruler cm"];
 
@@ -39,13 +39,13 @@ fn main() {
     }
 }
 
-fn object(kind: &str) -> Object {
+fn object(kind: &str) -> KnownObject {
     match kind {
-        "card" => Object::BankCard,
-        "a4" => Object::A4,
-        "letter" => Object::Letter,
-        "chess" => Object::Chessboard { square_um: 25_000, corners: None },
-        _ => Object::Ruler,
+        "card" => KnownObject::BankCard,
+        "a4" => KnownObject::A4,
+        "letter" => KnownObject::Letter,
+        "chess" => KnownObject::Chessboard { square_um: 25_000, corners: None },
+        _ => KnownObject::Ruler,
     }
 }
 

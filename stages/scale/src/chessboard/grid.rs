@@ -10,13 +10,13 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// A full rectangle of corners, row by row, clockwise where y grows downwards.
 #[derive(Debug, Clone)]
-pub(crate) struct Board {
+pub(crate) struct BoardCorners {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
     pub(crate) places: Vec<Point2<f64>>,
 }
 
-impl Board {
+impl BoardCorners {
     /// Whether it has m x n corners, either way.
     pub(crate) fn is(&self, m: usize, n: usize) -> bool {
         (self.columns, self.rows) == (m, n) || (self.columns, self.rows) == (n, m)
@@ -43,9 +43,9 @@ const SEEDS: usize = 400;
 const LEAST: usize = 3;
 
 /// Boards, the largest first; those of fewer than a quarter of its corners are left out.
-pub(crate) fn boards(saddles: &[Saddle]) -> Vec<Board> {
+pub(crate) fn boards(saddles: &[Saddle]) -> Vec<BoardCorners> {
     let mut taken = vec![false; saddles.len()];
-    let mut found: Vec<Board> = Vec::new();
+    let mut found: Vec<BoardCorners> = Vec::new();
     for seed in 0..saddles.len().min(SEEDS) {
         if taken[seed] {
             continue;
@@ -62,10 +62,10 @@ pub(crate) fn boards(saddles: &[Saddle]) -> Vec<Board> {
     found
 }
 
-type Cells = BTreeMap<(i32, i32), usize>;
+type CornerCells = BTreeMap<(i32, i32), usize>;
 
 /// The grid around a seed.
-fn grow(saddles: &[Saddle], taken: &[bool], seed: usize) -> Option<Cells> {
+fn grow(saddles: &[Saddle], taken: &[bool], seed: usize) -> Option<CornerCells> {
     let s = &saddles[seed];
     let first = next_along(saddles, taken, seed, s.edges[0])?;
     let second = next_along(saddles, taken, seed, s.edges[1])?;
@@ -76,7 +76,7 @@ fn grow(saddles: &[Saddle], taken: &[bool], seed: usize) -> Option<Cells> {
     if steps[0].perp(&steps[1]) < 0.0 {
         steps.swap(0, 1);
     }
-    let mut cells = Cells::from([((0, 0), seed)]);
+    let mut cells = CornerCells::from([((0, 0), seed)]);
     let mut used = taken.to_vec();
     used[seed] = true;
     let mut queue = VecDeque::from([((0, 0), steps)]);
@@ -139,7 +139,7 @@ fn exchanged(a: &Saddle, b: &Saddle) -> bool {
 }
 
 /// The largest full rectangle of cells.
-fn rectangle(saddles: &[Saddle], cells: &Cells) -> Option<Board> {
+fn rectangle(saddles: &[Saddle], cells: &CornerCells) -> Option<BoardCorners> {
     let (x0, x1) = (cells.keys().map(|c| c.0).min()?, cells.keys().map(|c| c.0).max()?);
     let (y0, y1) = (cells.keys().map(|c| c.1).min()?, cells.keys().map(|c| c.1).max()?);
     let mut best: Option<(i32, [i32; 4])> = None;
@@ -161,7 +161,7 @@ fn rectangle(saddles: &[Saddle], cells: &Cells) -> Option<Board> {
     let at = |c: i32, r: i32| cells.get(&(x + c, y + r)).map(|i| saddles[*i].at);
     let places: Option<Vec<_>> =
         (0..rows).flat_map(|r| (0..columns).map(move |c| (c, r))).map(|(c, r)| at(c, r)).collect();
-    Some(Board { columns: columns as usize, rows: rows as usize, places: places? })
+    Some(BoardCorners { columns: columns as usize, rows: rows as usize, places: places? })
 }
 
 /// Start and length of the longest run.

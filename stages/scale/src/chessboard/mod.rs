@@ -12,12 +12,12 @@ mod grid;
 mod refine;
 mod saddles;
 
-use crate::found::{Found, Kind, density, inverse, middle};
-use crate::options::Options;
-use crate::pixels::Small;
-use crate::pose::{self, Camera, Pin, through};
-use crate::{Object, ScaleError};
-use grid::Board;
+use crate::found::{Found, ScaleKind, density, inverse, middle};
+use crate::options::ScaleOptions;
+use crate::pixels::ReducedPhoto;
+use crate::pose::{self, KnownCamera, Pin, through};
+use crate::{KnownObject, ScaleError};
+use grid::BoardCorners;
 use image::RgbImage;
 use nalgebra::{Matrix3, Point2, Vector2};
 
@@ -31,12 +31,12 @@ const OFF_SHARE: f64 = 0.02;
 /// Finds a chessboard of squares of a side, metres.
 pub(crate) fn find(
     photo: &RgbImage,
-    object: Object,
+    object: KnownObject,
     square: f64,
     counts: Option<(u32, u32)>,
-    options: &Options,
+    options: &ScaleOptions,
 ) -> Result<Found, ScaleError> {
-    let camera = Camera::of(photo.width(), photo.height(), options.focal_35mm);
+    let camera = KnownCamera::of(photo.width(), photo.height(), options.focal_35mm);
     let longer = photo.width().max(photo.height()) as usize;
     let mut ks: Vec<usize> = SIZES.iter().map(|s| longer.div_ceil(*s)).collect();
     ks.dedup();
@@ -53,14 +53,14 @@ pub(crate) fn find(
 
 fn at_size(
     photo: &RgbImage,
-    object: Object,
+    object: KnownObject,
     square: f64,
     counts: Option<(u32, u32)>,
     k: usize,
-    camera: &Camera,
+    camera: &KnownCamera,
 ) -> Result<Found, ScaleError> {
     let none = || ScaleError::NoneFound { object: object.name() };
-    let small = Small::of(photo, k);
+    let small = ReducedPhoto::of(photo, k);
     let boards = grid::boards(&saddles::saddles(&small));
     let mut found: Vec<Found> = Vec::new();
     for board in boards {
@@ -93,7 +93,7 @@ fn checked(found: Found) -> Result<Found, ScaleError> {
 }
 
 /// Whether a board comes within a square of the frame.
-fn near_frame(board: &Board, small: &Small) -> bool {
+fn near_frame(board: &BoardCorners, small: &ReducedPhoto) -> bool {
     let reach = 1.2 * board.square();
     let (w, h) = (small.w as f64, small.h as f64);
     board.outer().iter().any(|p| p.x < reach || p.y < reach || p.x > w - reach || p.y > h - reach)
@@ -102,11 +102,11 @@ fn near_frame(board: &Board, small: &Small) -> bool {
 /// The board's plane, if its corners lie on one.
 fn measured(
     photo: &RgbImage,
-    object: Object,
+    object: KnownObject,
     square: f64,
-    board: &Board,
-    small: &Small,
-    camera: &Camera,
+    board: &BoardCorners,
+    small: &ReducedPhoto,
+    camera: &KnownCamera,
 ) -> Option<Found> {
     let reach = (0.35 * board.square() * small.k as f64).clamp(2.0, 9.0);
     let places: Vec<Point2<f64>> =
@@ -124,7 +124,7 @@ fn measured(
     let corners = [0, c - 1, c * r - 1, c * (r - 1)].map(|i| places[i]);
     Some(Found {
         object,
-        kind: Kind::Plane,
+        kind: ScaleKind::Plane,
         corners,
         marks: places,
         homography: inverse(&h)?,
@@ -136,7 +136,7 @@ fn measured(
 }
 
 /// The place of corner `i` on the board, metres from its middle.
-fn on_board(board: &Board, i: usize, square: f64) -> Point2<f64> {
+fn on_board(board: &BoardCorners, i: usize, square: f64) -> Point2<f64> {
     let (x, y) = ((i % board.columns) as f64, (i / board.columns) as f64);
     Point2::new(x - (board.columns - 1) as f64 / 2.0, y - (board.rows - 1) as f64 / 2.0) * square
 }

@@ -6,7 +6,7 @@
 //!
 //! Cost: about 50 ns a pixel.
 
-use crate::pixels::Small;
+use crate::pixels::ReducedPhoto;
 use nalgebra::{Point2, Vector2};
 use rayon::prelude::*;
 
@@ -31,7 +31,7 @@ const RADIUS: f64 = 4.0;
 const CONTRAST: f32 = 14.0;
 
 /// Saddles that pass the ring's test, those of the largest contrast first.
-pub(crate) fn saddles(small: &Small) -> Vec<Saddle> {
+pub(crate) fn saddles(small: &ReducedPhoto) -> Vec<Saddle> {
     let (w, h) = (small.w, small.h);
     let grey = smoothed(&small.rgb.iter().map(|c| (c[0] + c[1] + c[2]) / 3.0).collect::<Vec<f32>>(), w, h);
     let mut strength = vec![0f32; w * h];

@@ -13,14 +13,14 @@
 mod period;
 mod strip;
 
-use crate::found::{Found, Kind, middle};
-use crate::pixels::Small;
-use crate::ridges::Ridges;
+use crate::found::{Found, ScaleKind, middle};
+use crate::pixels::ReducedPhoto;
+use crate::ridges::SlopeRidges;
 use crate::segments::{Segment, segments};
-use crate::{Object, ScaleError};
+use crate::{KnownObject, ScaleError};
 use image::RgbImage;
 use nalgebra::{Matrix3, Point2, Rotation2};
-use period::{Period, Phase, autocorrelation, first_period};
+use period::{MarkPhase, Period, autocorrelation, first_period};
 use strip::Strip;
 
 /// Longer sides of the reduced copies, pixels.
@@ -36,11 +36,11 @@ const CHANGE: f64 = 0.02;
 
 /// Marks along an edge.
 #[derive(Debug, Clone)]
-struct Marks {
+struct RulerMarks {
     strip: Strip,
     /// Metres from a mark to the next.
     unit: f64,
-    phase: Phase,
+    phase: MarkPhase,
     /// How well they are seen, the better the larger.
     merit: f64,
     /// Depths between which all marks lie, pixels.
@@ -48,9 +48,9 @@ struct Marks {
 }
 
 /// Finds a ruler.
-pub(crate) fn find(photo: &RgbImage, object: Object) -> Result<Found, ScaleError> {
+pub(crate) fn find(photo: &RgbImage, object: KnownObject) -> Result<Found, ScaleError> {
     let edges = edges(photo);
-    let mut all: Vec<Marks> = edges.iter().filter_map(|e| marks(photo, e)).collect();
+    let mut all: Vec<RulerMarks> = edges.iter().filter_map(|e| marks(photo, e)).collect();
     all.sort_by(|a, b| b.merit.total_cmp(&a.merit));
     let none = || {
         edges.iter().find_map(|e| fine(photo, e)).unwrap_or(ScaleError::NoneFound { object: object.name() })
@@ -85,7 +85,7 @@ fn fine(photo: &RgbImage, edge: &Segment) -> Option<ScaleError> {
 
 /// Refuses where another ruler is as good: one whose middle is more than a ruler's width off the
 /// line.
-fn alone(all: &[Marks], best: &Found, object: Object) -> Result<(), ScaleError> {
+fn alone(all: &[RulerMarks], best: &Found, object: KnownObject) -> Result<(), ScaleError> {
     let mut places = vec![middle(&best.corners)];
     let Some(along) = (best.corners[1] - best.corners[0]).try_normalize(1e-9) else { return Ok(()) };
     for other in all.iter().skip(1).filter(|m| m.merit > 0.8 * all[0].merit) {
@@ -113,9 +113,9 @@ fn edges(photo: &RgbImage) -> Vec<Segment> {
 /// The longest edges of the photo reduced by `k`, those alike once, each a tenth longer at both
 /// ends.
 fn edges_at(photo: &RgbImage, k: usize) -> Vec<Segment> {
-    let small = Small::of(photo, k);
+    let small = ReducedPhoto::of(photo, k);
     let mut kept: Vec<Segment> = Vec::new();
-    for s in segments(&Ridges::of(&small, 2.0), LEAST) {
+    for s in segments(&SlopeRidges::of(&small, 2.0), LEAST) {
         if !kept.iter().any(|k| part_of(&s, k)) {
             kept.push(s);
         }
@@ -139,16 +139,16 @@ fn part_of(s: &Segment, long: &Segment) -> bool {
 
 /// The marks on lines beside an edge, wherever they are within a ruler's width; millimetres before
 /// others.
-fn marks(photo: &RgbImage, edge: &Segment) -> Option<Marks> {
+fn marks(photo: &RgbImage, edge: &Segment) -> Option<RulerMarks> {
     let strip = Strip::of(edge)?;
     let starts = starts(photo, &strip);
-    let all: Vec<Marks> = starts.iter().filter_map(|s| marks_of(photo, &strip, *s)).collect();
-    let metric = |m: &Marks| m.unit < 0.004 || of_centimetres(&starts, m.phase.spacing);
+    let all: Vec<RulerMarks> = starts.iter().filter_map(|s| marks_of(photo, &strip, *s)).collect();
+    let metric = |m: &RulerMarks| m.unit < 0.004 || of_centimetres(&starts, m.phase.spacing);
     all.into_iter().filter(metric).min_by(|a, b| a.unit.total_cmp(&b.unit).then(b.merit.total_cmp(&a.merit)))
 }
 
 /// The marks about a depth with a period.
-fn marks_of(photo: &RgbImage, strip: &Strip, (middle, p): (f64, Period)) -> Option<Marks> {
+fn marks_of(photo: &RgbImage, strip: &Strip, (middle, p): (f64, Period)) -> Option<RulerMarks> {
     let across = Across::of(photo, strip, p.lag);
     let most = across.clear(middle);
     // Marks end on both sides: the period is gone beyond the edge, and deeper inside.
@@ -160,9 +160,9 @@ fn marks_of(photo: &RgbImage, strip: &Strip, (middle, p): (f64, Period)) -> Opti
     }
     let unit = told([unit(&outer[0], p.lag), unit(&outer[1], p.lag)])?;
     let depths = [0.125, 0.375, 0.625, 0.875].map(|t| ends[0] + (ends[1] - ends[0]) * t);
-    let phase = Phase::follow(strip, photo, &depths, p.lag).filter(|f| regular(f, unit))?;
+    let phase = MarkPhase::follow(strip, photo, &depths, p.lag).filter(|f| regular(f, unit))?;
     let merit = p.clear * phase.periods.sqrt() * if unit < 0.004 { 1.0 } else { 2.0 };
-    Some(Marks { strip: strip.clone(), unit, phase, merit, ends })
+    Some(RulerMarks { strip: strip.clone(), unit, phase, merit, ends })
 }
 
 /// Millimetres are told on one side; centimetres where neither side has another period.
@@ -175,7 +175,7 @@ fn told(units: [Option<f64>; 2]) -> Option<f64> {
 }
 
 /// Whether there are enough marks and they are evenly apart.
-fn regular(phase: &Phase, unit: f64) -> bool {
+fn regular(phase: &MarkPhase, unit: f64) -> bool {
     let least = if unit < 0.004 { 25.0 } else { 7.0 };
     phase.periods >= least && phase.residual <= 0.12 * phase.spacing && phase.change.abs() <= 0.4
 }
@@ -278,7 +278,7 @@ fn of_centimetres(starts: &[(f64, Period)], lag: f64) -> bool {
 }
 
 /// The finding of marks.
-fn found(marks: &Marks, object: Object) -> Found {
+fn found(marks: &RulerMarks, object: KnownObject) -> Found {
     let (strip, phase) = (&marks.strip, &marks.phase);
     let at = |x: f64, depth: f64| strip.place(x, depth);
     let (a, b) = (phase.marks[0], phase.marks[phase.marks.len() - 1]);
@@ -291,7 +291,7 @@ fn found(marks: &Marks, object: Object) -> Found {
     let homography = upright(centre, strip, px_per_metre);
     Found {
         object,
-        kind: Kind::Line,
+        kind: ScaleKind::Line,
         corners,
         marks: places,
         homography,

@@ -92,7 +92,7 @@ pub(crate) fn peak_at(r: &[f64], lag: f64) -> f64 {
 
 /// Marks followed along an edge.
 #[derive(Debug, Clone)]
-pub(crate) struct Phase {
+pub(crate) struct MarkPhase {
     /// Pixels from a mark to the next at the middle of the marks.
     pub(crate) spacing: f64,
     /// Growth of the spacing from one end to the other, as a share.
@@ -115,18 +115,18 @@ struct Window {
     strength: f64,
 }
 
-impl Phase {
+impl MarkPhase {
     /// Follows marks of about `lag` pixels at the given depths.
-    pub(crate) fn follow(strip: &Strip, photo: &RgbImage, depths: &[f64], lag: f64) -> Option<Phase> {
+    pub(crate) fn follow(strip: &Strip, photo: &RgbImage, depths: &[f64], lag: f64) -> Option<MarkPhase> {
         let windows = windows(&mean_profile(strip, photo, depths), lag);
         let windows = unwrapped(strongest_run(&windows)?);
-        let curve = Curve::through(&windows, lag)?;
+        let curve = PhaseParabola::through(&windows, lag)?;
         let spacing = 1.0 / curve.rate(0.0);
         let good = spacing.is_finite() && spacing > 0.8 * lag && spacing < 1.25 * lag;
         let (low, high) = (curve.middle - curve.half - 2.5 * lag, curve.middle + curve.half + 2.5 * lag);
         let marks = curve.marks(low.max(0.0), high.min(strip.length as f64));
         let seen = windows.len() as f64 / (curve.half / lag + 1.0);
-        (good && marks.len() > 3).then(|| Phase {
+        (good && marks.len() > 3).then(|| MarkPhase {
             spacing,
             change: (curve.rate(-1.0) - curve.rate(1.0)) / curve.rate(0.0),
             periods: marks.len() as f64,
@@ -196,19 +196,19 @@ fn unwrapped(run: &[Window]) -> Vec<Window> {
 
 /// Phases as a parabola over the place from the middle, in halves of the length.
 #[derive(Debug, Clone, Copy)]
-struct Curve {
+struct PhaseParabola {
     fit: Vector3<f64>,
     middle: f64,
     half: f64,
     lag: f64,
 }
 
-impl Curve {
+impl PhaseParabola {
     /// The parabola through the phases, with weights of Tukey in a few rounds.
-    fn through(windows: &[Window], lag: f64) -> Option<Curve> {
+    fn through(windows: &[Window], lag: f64) -> Option<PhaseParabola> {
         let (first, last) = (windows.first()?.x, windows.last()?.x);
         let (middle, half) = ((first + last) / 2.0, ((last - first) / 2.0).max(1e-6));
-        let mut curve = Curve { fit: Vector3::zeros(), middle, half, lag };
+        let mut curve = PhaseParabola { fit: Vector3::zeros(), middle, half, lag };
         let mut scale = f64::INFINITY;
         for _ in 0..5 {
             let (mut a, mut b) = (Matrix3::zeros(), Vector3::zeros());

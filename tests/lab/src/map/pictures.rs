@@ -4,7 +4,7 @@
 use super::{Cell, Map, Outcome, Scheme};
 use toile_trade::digits::to_digits;
 use toile_trade::plot::axis::Axis;
-use toile_trade::plot::mark::{Anchor, INK, Mark, PALE, SIZE, line, text};
+use toile_trade::plot::mark::{Anchor, INK, PALE, PlotMark, SIZE, line, text};
 use toile_trade::plot::{png, svg};
 
 /// The area of all panels: left, top, right, bottom.
@@ -51,9 +51,9 @@ struct Panel<'a> {
     frame: [f64; 4],
 }
 
-fn marks(map: &Map, scheme: Scheme) -> Vec<Mark> {
+fn marks(map: &Map, scheme: Scheme) -> Vec<PlotMark> {
     let mut marks = vec![
-        Mark::Text {
+        PlotMark::Text {
             at: [AREA[0], 34.0],
             anchor: Anchor::Start,
             text: scheme.name().into(),
@@ -116,12 +116,12 @@ impl<'a> Panel<'a> {
         c.dt.unwrap_or(1e3 * c.edge)
     }
 
-    fn cell(&self, c: &Cell) -> Vec<Mark> {
+    fn cell(&self, c: &Cell) -> Vec<PlotMark> {
         let v = [Self::across(c), c.stiffness];
         let low = [self.x.at(v[0] / self.half[0]) + 0.5, self.y.at(v[1] / self.half[1]) - 0.5];
         let high = [self.x.at(v[0] * self.half[0]) - 0.5, self.y.at(v[1] * self.half[1]) + 0.5];
         let (colour, sign, ink) = look(c);
-        let mut marks = vec![Mark::Rect { corners: [low, high], colour }];
+        let mut marks = vec![PlotMark::Rect { corners: [low, high], colour }];
         if high[0] - low[0] > LEGIBLE && low[1] - high[1] > LEGIBLE {
             let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0 + 5.0];
             marks.push(text(middle, Anchor::Middle, &sign, ink));
@@ -130,7 +130,7 @@ impl<'a> Panel<'a> {
     }
 
     /// The explicit limit of each stiffness, as a dashed line cut at the frame.
-    fn limit(&self) -> Vec<Mark> {
+    fn limit(&self) -> Vec<PlotMark> {
         let mut places: Vec<[f64; 2]> =
             self.cells.iter().map(|c| [self.x.at(c.limit), self.y.at(c.stiffness)]).collect();
         places.dedup_by(|a, b| a[1].to_bits() == b[1].to_bits());
@@ -139,7 +139,7 @@ impl<'a> Panel<'a> {
         pairs.map(|w| line(w[0], w[1], 2.5, LIMIT, true)).collect()
     }
 
-    fn axes(&self, first: bool) -> Vec<Mark> {
+    fn axes(&self, first: bool) -> Vec<PlotMark> {
         let [left, top, right, bottom] = self.frame;
         let mut marks = vec![
             line([left, bottom], [right, bottom], 1.5, INK, false),
@@ -197,7 +197,7 @@ fn shade(digits: f64) -> [u8; 3] {
     [0, 1, 2].map(|k| mix(k).round() as u8)
 }
 
-fn legend() -> Vec<Mark> {
+fn legend() -> Vec<PlotMark> {
     let entries = [
         (shade(2.0), "2"),
         (shade(7.0), "to 7 digits right"),
@@ -209,7 +209,7 @@ fn legend() -> Vec<Mark> {
     let (mut x, y) = (14.0, f64::from(SIZE[1]) - 36.0);
     let mut marks = Vec::new();
     for (colour, words) in entries {
-        marks.push(Mark::Rect { corners: [[x, y - 12.0], [x + 16.0, y + 4.0]], colour });
+        marks.push(PlotMark::Rect { corners: [[x, y - 12.0], [x + 16.0, y + 4.0]], colour });
         marks.push(text([x + 22.0, y], Anchor::Start, words, INK));
         x += 22.0 + 8.2 * words.len() as f64 + 14.0;
     }

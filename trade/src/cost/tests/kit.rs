@@ -58,10 +58,10 @@ pub(super) fn runs(pipeline: &str, count: usize, spread: f64) -> Vec<CostRecord>
     (0..count).map(run).collect()
 }
 
-pub(super) fn place<'a>(pipeline: &'a str, stage: &'a str, role: &'a str) -> Place<'a> {
-    Place { pipeline, stage, role, style: "Vest" }
+pub(super) fn place<'a>(pipeline: &'a str, stage: &'a str, role: &'a str) -> StagePlace<'a> {
+    StagePlace { pipeline, stage, role, style: "Vest" }
 }
 
 pub(super) fn wall(costs: &Costs, pipeline: &str, size: &Size) -> Estimate {
-    costs.estimate(&place(pipeline, "Otsu", "binariser"), size, Figure::Wall).unwrap()
+    costs.estimate(&place(pipeline, "Otsu", "binariser"), size, CostFigure::Wall).unwrap()
 }

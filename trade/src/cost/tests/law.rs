@@ -41,8 +41,8 @@ fn a_kind_of_garment_that_takes_more_is_known_by_other_pipelines_of_the_kind() {
     };
     let all = [of("a", "Vest", 1.5), of("b", "Vest", 1.5), of("c", "TShirt", 1.0), of("d", "TShirt", 1.0)];
     let told = |seen: &[CostRecord], style: &str| {
-        let at = Place { style, ..place("new", "Otsu", "binariser") };
-        let e = Costs::fit(seen, &[], 2).estimate(&at, &pixels(1e6), Figure::Wall).unwrap();
+        let at = StagePlace { style, ..place("new", "Otsu", "binariser") };
+        let e = Costs::fit(seen, &[], 2).estimate(&at, &pixels(1e6), CostFigure::Wall).unwrap();
         e.value / otsu(1e6)
     };
     let (vest, tee, cape) =
@@ -73,11 +73,13 @@ fn a_solver_grows_faster_than_its_mesh() {
     let run = |n: f64| record("a", "StaticEquilibrium", "draper", triangles(n), 1e-5 * n.powf(1.5));
     let seen: Vec<CostRecord> = [500.0, 1e3, 2e3, 4e3].map(run).into();
     let costs = Costs::fit(&seen, &[], 2);
-    let far =
-        costs.estimate(&place("a", "StaticEquilibrium", "draper"), &triangles(16e3), Figure::Wall).unwrap();
+    let far = costs
+        .estimate(&place("a", "StaticEquilibrium", "draper"), &triangles(16e3), CostFigure::Wall)
+        .unwrap();
     assert!((far.value / (1e-5 * 16e3_f64.powf(1.5)) - 1.0).abs() < 0.05, "{far:?}");
-    let near =
-        costs.estimate(&place("a", "StaticEquilibrium", "draper"), &triangles(3e3), Figure::Wall).unwrap();
+    let near = costs
+        .estimate(&place("a", "StaticEquilibrium", "draper"), &triangles(3e3), CostFigure::Wall)
+        .unwrap();
     assert!(far.high / far.value > near.high / near.value, "what was never measured is less sure");
 }
 
@@ -111,8 +113,8 @@ fn a_slower_machine_is_known_by_other_stages() {
         })
         .collect();
     let at = place("b", "StaticEquilibrium", "draper");
-    let before = Costs::fit(&[], &shipped, 2).estimate(&at, &triangles(1e3), Figure::Wall).unwrap();
-    let after = Costs::fit(&slow, &shipped, 2).estimate(&at, &triangles(1e3), Figure::Wall).unwrap();
+    let before = Costs::fit(&[], &shipped, 2).estimate(&at, &triangles(1e3), CostFigure::Wall).unwrap();
+    let after = Costs::fit(&slow, &shipped, 2).estimate(&at, &triangles(1e3), CostFigure::Wall).unwrap();
     assert!((after.value / before.value / 3.0 - 1.0).abs() < 0.1, "{after:?} after {before:?}");
     // Runs of another number of threads say nothing.
     assert_eq!(Costs::fit(&slow, &shipped, 1).own_runs(), 0);
@@ -122,9 +124,9 @@ fn a_slower_machine_is_known_by_other_stages() {
 fn a_stage_without_record_is_told_by_its_role() {
     let costs = Costs::fit(&runs("a", 30, 0.05), &[], 2);
     assert!(!costs.knows("Background"));
-    let e = costs.estimate(&place("a", "Background", "binariser"), &pixels(1e6), Figure::Wall).unwrap();
+    let e = costs.estimate(&place("a", "Background", "binariser"), &pixels(1e6), CostFigure::Wall).unwrap();
     assert!((e.value / otsu(1e6) - 1.0).abs() < 0.1 && e.high > 2.0 * e.value, "{e:?}");
-    assert_eq!(costs.estimate(&place("a", "Glb", "writer"), &pixels(1e6), Figure::Wall), None);
+    assert_eq!(costs.estimate(&place("a", "Glb", "writer"), &pixels(1e6), CostFigure::Wall), None);
 }
 
 #[test]
@@ -182,11 +184,11 @@ fn rules_of_sizes_are_corrected_by_kind_of_garment() {
 #[test]
 fn a_pipeline_is_judged_by_the_others_alone() {
     let mut seen = [runs("a", 10, 0.05), runs("b", 10, 0.05), runs("c", 10, 0.05)].concat();
-    let good = check(&seen, &[], Figure::Wall);
+    let good = check(&seen, &[], CostFigure::Wall);
     assert_eq!((good.all.count, good.telling.count, good.met.count), (30, 30, 30));
     assert!(good.all.right >= 29, "{:?}", good.all);
     // c now takes twice as long: nobody else knows.
     seen.iter_mut().filter(|r| r.pipeline == "c").for_each(|r| r.used.wall_s *= 2.0);
-    let c = check(&seen, &["c".into()], Figure::Wall);
+    let c = check(&seen, &["c".into()], CostFigure::Wall);
     assert_eq!((c.stages.len(), c.all.count, c.all.right), (1, 10, 0));
 }

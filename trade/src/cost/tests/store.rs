@@ -5,8 +5,8 @@ use crate::cost::*;
 use proptest::prelude::*;
 use std::path::Path;
 
-fn host() -> Host {
-    Host { cpu: "A processor".into(), cores: 2 }
+fn host() -> HostMachine {
+    HostMachine { cpu: "A processor".into(), cores: 2 }
 }
 
 fn written(text: &str) -> (tempfile::TempDir, Opened) {
@@ -23,7 +23,7 @@ fn warned(text: &str, words: &str) {
     assert_eq!(opened, Opened { records: Vec::new(), warning: Some(all) });
 }
 
-fn text_of(host: Host, version: &str) -> String {
+fn text_of(host: HostMachine, version: &str) -> String {
     let collection = Collection { host, toile: version.into(), ..Collection::here(runs("a", 3, 0.1)) };
     collection.to_text()
 }
@@ -31,7 +31,7 @@ fn text_of(host: Host, version: &str) -> String {
 #[test]
 fn a_store_that_is_of_no_use_is_said_to_be() {
     let version = env!("CARGO_PKG_VERSION");
-    let other = Host { cpu: "Another".into(), cores: 64 };
+    let other = HostMachine { cpu: "Another".into(), cores: 64 };
     warned("", "is damaged; the shipped figures stand in");
     warned("nonsense\n{}", "is damaged; the shipped figures stand in");
     warned(
@@ -64,7 +64,7 @@ fn the_store_keeps_the_latest_runs_and_no_more() {
     let opened = store.open(&host());
     assert_eq!((opened.records.as_slice(), opened.warning), (&runs("a", 30, 0.1)[6..], None));
     // What another machine left makes place.
-    let other = Host { cores: 8, ..host() };
+    let other = HostMachine { cores: 8, ..host() };
     store.add(&other, runs("b", 1, 0.1)).unwrap();
     assert_eq!(store.open(&other).records, runs("b", 1, 0.1));
 }
@@ -86,7 +86,7 @@ proptest! {
         bytes.truncate(bytes.len().saturating_sub(cut % 300));
         if let Ok(collection) = parse_collection(&String::from_utf8_lossy(&bytes)) {
             let costs = Costs::fit(&collection.records, &[], 2);
-            let e = costs.estimate(&place("a", "Otsu", "binariser"), &pixels(1e6), Figure::Wall);
+            let e = costs.estimate(&place("a", "Otsu", "binariser"), &pixels(1e6), CostFigure::Wall);
             prop_assert!(e.is_none_or(|e| e.value.is_finite() && e.low <= e.value && e.value <= e.high));
         }
     }

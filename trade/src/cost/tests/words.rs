@@ -12,7 +12,7 @@ fn a_check_is_told_in_words() {
         record("b", "Otsu", "binariser", size.clone(), 0.05),
         record("b", "Cut", "binariser", size, 0.1),
     ];
-    let lines = check_lines(&check(&seen, &["b".into()], Figure::Wall));
+    let lines = check_lines(&check(&seen, &["b".into()], CostFigure::Wall));
     assert_eq!(
         lines,
         [

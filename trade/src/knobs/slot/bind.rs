@@ -1,20 +1,24 @@
 //! Knobs held against a pipeline: which slot each acts on, and what it may be set to there.
 
-use super::{Board, Knob, Setting, Slot};
+use super::{Knob, KnobBoard, KnobSlot, Setting};
 use crate::knobs::dial::{Dial, dial};
 use crate::knobs::knob::{KnobSpec, Values, fault};
 use crate::knobs::source::{Source, path_of};
 use toile_core::{Card, Node, ParamDoc, Role, StageError, nearest};
 use toile_pipeline::Pipeline;
 
-impl Board {
+impl KnobBoard {
     /// Holds knobs against a pipeline.
     ///
     /// Errors: a name that is not there, a range or value that the parameter does not take; with
     /// the nearest name.
-    pub fn new(source: &Source<'_>, pipeline: &Pipeline, specs: &[KnobSpec]) -> Result<Board, StageError> {
+    pub fn new(
+        source: &Source<'_>,
+        pipeline: &Pipeline,
+        specs: &[KnobSpec],
+    ) -> Result<KnobBoard, StageError> {
         let cards = source.registry.cards().cloned().collect();
-        let mut board = Board { knobs: Vec::new(), slots: Vec::new(), cards, reference: Setting::new() };
+        let mut board = KnobBoard { knobs: Vec::new(), slots: Vec::new(), cards, reference: Setting::new() };
         // Choices of stages first: others may name a stage that only a choice brings in.
         let (choices, others): (Vec<_>, Vec<_>) = specs.iter().partition(|s| s.param.is_none());
         for spec in choices.into_iter().chain(others) {
@@ -88,7 +92,7 @@ impl Board {
             return known;
         }
         let text = |span: &std::ops::Range<usize>| pipeline.text.get(span.clone()).unwrap_or("").to_owned();
-        self.slots.push(Slot {
+        self.slots.push(KnobSlot {
             path,
             own: node.card.clone(),
             given: node.params.iter().map(|(name, span)| (name.clone(), text(span))).collect(),

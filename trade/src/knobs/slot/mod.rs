@@ -41,7 +41,7 @@ pub struct Knob {
 
 /// A place of the pipeline that knobs act on.
 #[derive(Debug, Clone)]
-pub struct Slot {
+pub struct KnobSlot {
     /// The path of its stage for overrides: `stages.GridMesher`, `body`.
     path: String,
     /// The card of the stage that the file has there.
@@ -54,10 +54,10 @@ pub struct Slot {
 
 /// The knobs of a pipeline with the slots that they act on.
 #[derive(Debug, Clone)]
-pub struct Board {
+pub struct KnobBoard {
     /// The knobs, in the user's order; dimensions of the search.
     pub knobs: Vec<Knob>,
-    slots: Vec<Slot>,
+    slots: Vec<KnobSlot>,
     cards: Vec<Card>,
     /// What the reference has in place of the pipeline's own values.
     reference: Setting,

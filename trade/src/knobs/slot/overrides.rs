@@ -1,11 +1,11 @@
 //! Settings as overrides of the pipeline file.
 
-use super::{Board, Setting, Slot};
+use super::{KnobBoard, KnobSlot, Setting};
 use std::collections::BTreeMap;
 use toile_core::ParamDoc;
 use toile_pipeline::Override;
 
-impl Board {
+impl KnobBoard {
     /// The overrides that make a setting, in the order in which they are applied.
     pub fn overrides(&self, setting: &Setting) -> Vec<Override> {
         (0..self.slots.len()).flat_map(|slot| self.slot_overrides(slot, setting)).collect()
@@ -35,7 +35,7 @@ impl Board {
     }
 
     /// What the file gives of the slot's own stage that a stage in its place takes as well.
-    fn carried(&self, slot: &Slot, name: &str) -> BTreeMap<String, String> {
+    fn carried(&self, slot: &KnobSlot, name: &str) -> BTreeMap<String, String> {
         let Some(card) = self.card(slot.own.role, name) else { return BTreeMap::new() };
         let same = |p: &ParamDoc| slot.own.params.iter().any(|q| q.name == p.name && q.kind == p.kind);
         let takes = |name: &str, text: &str| {

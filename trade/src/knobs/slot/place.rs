@@ -1,10 +1,10 @@
 //! Settings as places of the unit cube, one coordinate a knob.
 
-use super::{Board, Knob, Setting};
+use super::{Knob, KnobBoard, Setting};
 use crate::knobs::dial::Dial;
 use crate::knobs::split::field;
 
-impl Board {
+impl KnobBoard {
     /// The setting at a point of the unit cube, one coordinate a knob.
     pub fn setting(&self, at: &[f64]) -> Setting {
         let value = |i: usize| at.get(i).copied().unwrap_or(0.5).clamp(0.0, 1.0);

@@ -4,7 +4,7 @@
 //! that is off by default makes the garment forget where it began, the reference needs it on, and
 //! settings without it are judged against that.
 
-use super::{Board, Setting};
+use super::{KnobBoard, Setting};
 use crate::knobs::dial::dial;
 use crate::knobs::knob::{Values, fault};
 use std::str::FromStr;
@@ -31,11 +31,11 @@ impl FromStr for ReferenceValue {
     }
 }
 
-impl Board {
+impl KnobBoard {
     /// Gives the reference these values; it is refined from there.
     ///
     /// Errors: no such knob, the choice of a stage, a value that the parameter does not take.
-    pub fn with_reference(mut self, values: &[ReferenceValue]) -> Result<Board, StageError> {
+    pub fn with_reference(mut self, values: &[ReferenceValue]) -> Result<KnobBoard, StageError> {
         for given in values {
             let value = self.checked(given)?;
             self.reference.insert(given.key.clone(), value);

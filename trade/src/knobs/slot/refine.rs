@@ -1,10 +1,10 @@
 //! Which knobs are resolutions, and settings in which these are finer.
 
-use super::{Board, Knob, Setting};
-use crate::knobs::dial::{Form, is_finer, is_spatial, numeric, rounded, way};
+use super::{Knob, KnobBoard, Setting};
+use crate::knobs::dial::{NumberForm, is_finer, is_spatial, numeric, rounded, way};
 use toile_core::ParamDoc;
 
-impl Board {
+impl KnobBoard {
     /// The reference's setting, the pipeline's own where it was given none, with every resolution
     /// refined by a factor, as far as its parameters go.
     pub fn refined(&self, factor: f64) -> Setting {
@@ -14,7 +14,7 @@ impl Board {
             let Some(own) = setting.get(&knob.key).and_then(|v| numeric(v)) else { continue };
             let finer =
                 (own / factor.powf(way)).clamp(doc.min.unwrap_or(f64::MIN), doc.max.unwrap_or(f64::MAX));
-            if let (Some(form), true) = (Form::of(doc), finer != own) {
+            if let (Some(form), true) = (NumberForm::of(doc), finer != own) {
                 setting.insert(knob.key.clone(), form.write(rounded(finer)));
             }
         }

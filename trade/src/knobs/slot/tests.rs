@@ -86,9 +86,9 @@ fn one_number_written_twice_is_one_and_one_outside_a_range_is_near_nothing_in_it
     assert!(dial.is_near("0.0101", "0.01", 0.03) && !dial.is_near("0.002", "0.01", 0.03));
 }
 
-fn board(source: &Source<'_>, knobs: &[&str]) -> Result<Board, StageError> {
+fn board(source: &Source<'_>, knobs: &[&str]) -> Result<KnobBoard, StageError> {
     let specs: Vec<KnobSpec> = knobs.iter().map(|k| k.parse().unwrap()).collect();
-    Board::new(source, &source.load(&[]).unwrap(), &specs)
+    KnobBoard::new(source, &source.load(&[]).unwrap(), &specs)
 }
 
 fn refused(text: &str, knobs: &[&str]) -> (String, String) {
@@ -287,7 +287,7 @@ fn where_a_draped_garment_is_refined_its_parts_are_turned_and_the_mesh_that_find
         found.iter().map(KnobSpec::key).collect::<Vec<_>>(),
         ["Subdivide.parts", "Settle.speed", "Settle.non_static"]
     );
-    let board = Board::new(&source(&refined_vest(), &registry), &pipeline, &found).unwrap();
+    let board = KnobBoard::new(&source(&refined_vest(), &registry), &pipeline, &found).unwrap();
     // Half and twice the parts.
     assert!(
         board.setting(&[0.0, 0.5])["Subdivide.parts"] == "1"

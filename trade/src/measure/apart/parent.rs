@@ -64,10 +64,10 @@ enum Ended {
     OverLimit,
 }
 
-type Reader = JoinHandle<Vec<u8>>;
+type ReaderThread = JoinHandle<Vec<u8>>;
 
 /// Threads that read what the process prints, and a channel that closes with its answer's end.
-fn readers(child: &mut Child) -> Option<(Receiver<()>, Reader, Reader)> {
+fn readers(child: &mut Child) -> Option<(Receiver<()>, ReaderThread, ReaderThread)> {
     let (mut out, mut err) = (child.stdout.take()?, child.stderr.take()?);
     let (open, done) = channel::<()>();
     let answer = std::thread::spawn(move || {

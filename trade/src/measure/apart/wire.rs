@@ -59,16 +59,16 @@ impl Task {
 
 /// The first line of an answer.
 #[derive(Debug, Serialize, Deserialize)]
-enum Head {
+enum AnswerHeader {
     /// It ran; the artifacts follow, each with its kind and its number of bytes.
-    Ran { figures: Figures, parts: Vec<(String, usize)> },
+    Ran { figures: RunFigures, parts: Vec<(String, usize)> },
     /// A stage failed.
     Failed { code: String, message: String, hint: Option<String> },
 }
 
 /// What a run gives beside its artifacts.
 #[derive(Debug, Serialize, Deserialize)]
-struct Figures {
+struct RunFigures {
     stages_s: BTreeMap<String, f64>,
     wall_s: f64,
     cpu_s: f64,
@@ -83,11 +83,11 @@ pub(super) fn write(ran: Result<Ran, Missed>) -> Result<Vec<u8>, String> {
     let (head, bytes) = match ran {
         Ok(ran) => {
             let (parts, bytes) = parts(&ran)?;
-            (Head::Ran { figures: figures(ran), parts }, bytes)
+            (AnswerHeader::Ran { figures: figures(ran), parts }, bytes)
         }
         Err(missed) => {
             let StageError { code, message, hint, .. } = missed.into();
-            (Head::Failed { code: code.to_string(), message, hint }, Vec::new())
+            (AnswerHeader::Failed { code: code.to_string(), message, hint }, Vec::new())
         }
     };
     let mut out = serde_json::to_vec(&head).map_err(|e| e.to_string())?;
@@ -96,14 +96,14 @@ pub(super) fn write(ran: Result<Ran, Missed>) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-fn figures(ran: Ran) -> Figures {
+fn figures(ran: Ran) -> RunFigures {
     let Ran { stages_s, wall_s, cpu_s, peak_memory_bytes, reads, .. } = ran;
-    Figures { stages_s, wall_s, cpu_s, peak_memory_bytes, reads }
+    RunFigures { stages_s, wall_s, cpu_s, peak_memory_bytes, reads }
 }
 
-type Parts = (Vec<(String, usize)>, Vec<u8>);
+type AnswerParts = (Vec<(String, usize)>, Vec<u8>);
 
-fn parts(ran: &Ran) -> Result<Parts, String> {
+fn parts(ran: &Ran) -> Result<AnswerParts, String> {
     let body = ran.body.as_ref().map(|b| b as &dyn Artifact);
     let model = ran.model.as_ref().map(|m| m as &dyn Artifact);
     let figures = ran.figures.as_ref().map(|f| f as &dyn Artifact);
@@ -125,12 +125,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Ran, Missed> {
         |why: &str| Missed::Failed(StageError::internal(format!("a run's own process answers with {why}")));
     let end = bytes.iter().position(|b| *b == b'\n').ok_or_else(|| broken("no whole line"))?;
     match serde_json::from_slice(&bytes[..end]).map_err(|e| broken(&e.to_string()))? {
-        Head::Failed { code, message, hint } => {
+        AnswerHeader::Failed { code, message, hint } => {
             let code = ErrorCode::ALL.into_iter().find(|c| c.as_str() == code);
             let e = StageError::new(code.unwrap_or(ErrorCode::Internal), message);
             Err(Missed::Failed(StageError { hint, ..e }))
         }
-        Head::Ran { figures, parts } => {
+        AnswerHeader::Ran { figures, parts } => {
             let artifacts = Artifacts::read(&parts, &bytes[end + 1..]);
             artifacts.and_then(|artifacts| artifacts.ran(figures)).map_err(|why| broken(&why))
         }
@@ -160,8 +160,8 @@ impl<'a> Artifacts<'a> {
         Ok(any.downcast_ref::<T>().cloned())
     }
 
-    fn ran(&self, figures: Figures) -> Result<Ran, String> {
-        let Figures { stages_s, wall_s, cpu_s, peak_memory_bytes, reads } = figures;
+    fn ran(&self, figures: RunFigures) -> Result<Ran, String> {
+        let RunFigures { stages_s, wall_s, cpu_s, peak_memory_bytes, reads } = figures;
         let garment = self.one()?.ok_or("no garment")?;
         let (body, model, figures) = (self.one()?, self.one()?, self.one()?);
         Ok(Ran { garment, body, model, figures, stages_s, wall_s, cpu_s, peak_memory_bytes, reads })

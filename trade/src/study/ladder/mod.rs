@@ -22,11 +22,11 @@ mod spread;
 pub(crate) use spread::moved_start;
 
 use crate::errors::{compare, ease};
-use crate::knobs::slot::{Board, Setting, setting_words};
+use crate::knobs::slot::{KnobBoard, Setting, setting_words};
 use crate::knobs::source::Source;
 use crate::measure::{Bench, Missed, Ran};
-use crate::record::{Level, Order, Reference};
-use crate::reference::richardson::{Step, convergence};
+use crate::record::{Order, Reference, ReferenceLevel};
+use crate::reference::richardson::{RefinementStep, convergence};
 use crate::study::{Allowed, GROWTH};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -50,11 +50,11 @@ const MOST_POWERS: i32 = 2 * MOST_LEVELS as i32;
 const NO_FINER: &str = "no knob can be refined further";
 
 /// How the reference is looked for.
-pub struct Search<'a> {
+pub struct ReferenceSearch<'a> {
     /// The pipeline.
     pub source: &'a Source<'a>,
     /// Its knobs.
-    pub board: &'a Board,
+    pub board: &'a KnobBoard,
     /// How runs are made.
     pub bench: &'a Bench,
     /// Keeps the levels for later sessions.
@@ -72,21 +72,21 @@ pub struct Search<'a> {
 }
 
 /// The reference with its garment.
-pub struct Found {
+pub struct FoundReference {
     /// The record.
     pub reference: Reference,
     /// The finest level.
     pub ran: Ran,
 }
 
-impl Search<'_> {
+impl ReferenceSearch<'_> {
     /// Refines until the garment stops moving or the budget is used.
     ///
     /// Errors: the pipeline's own setting fails; the budget is too short to say anything; stopped
     /// by the user.
-    pub fn run(&self, tell: &mut dyn FnMut(String)) -> Result<Found, StageError> {
+    pub fn run(&self, tell: &mut dyn FnMut(String)) -> Result<FoundReference, StageError> {
         let started = Instant::now();
-        let (mut levels, mut last, mut before) = (Vec::<Level>::new(), None::<Ran>, None::<Ran>);
+        let (mut levels, mut last, mut before) = (Vec::<ReferenceLevel>::new(), None::<Ran>, None::<Ran>);
         let stopped = loop {
             let k = levels.len();
             if let Some(why) = self.enough(&levels, self.budget.saturating_sub(started.elapsed())) {
@@ -123,18 +123,18 @@ impl Search<'_> {
         let ease_mm = ease(&ran);
         let reference =
             Reference { ratio: RATIO, levels, stopped, spread, neighbours, ease_mm, ..Reference::default() };
-        Ok(Found { reference: self.with_orders(reference), ran })
+        Ok(FoundReference { reference: self.with_orders(reference), ran })
     }
 
     /// The reference of an earlier session: its finest level again, from the cache where it is
     /// still there.
     ///
     /// Errors: it does not run any more.
-    pub fn again(&self, reference: Reference) -> Result<Found, StageError> {
+    pub fn again(&self, reference: Reference) -> Result<FoundReference, StageError> {
         let finest =
             reference.levels.last().ok_or_else(|| StageError::invalid("the record holds no reference"))?;
         let ran = self.level(&finest.setting, None)?;
-        Ok(Found { ran, reference: self.with_orders(reference) })
+        Ok(FoundReference { ran, reference: self.with_orders(reference) })
     }
 
     /// The setting of a level; none where no knob can be refined so far.
@@ -154,7 +154,7 @@ impl Search<'_> {
 
     /// The reference with the orders that its levels show.
     fn with_orders(&self, reference: Reference) -> Reference {
-        let order = |figure: fn(&Level) -> Option<f64>| self.order(&reference.levels, figure);
+        let order = |figure: fn(&ReferenceLevel) -> Option<f64>| self.order(&reference.levels, figure);
         Reference {
             mean: order(|l| Some(l.moved_mm?.mean)),
             p95: order(|l| Some(l.moved_mm?.p95)),
@@ -163,12 +163,12 @@ impl Search<'_> {
         }
     }
 
-    fn order(&self, levels: &[Level], figure: fn(&Level) -> Option<f64>) -> Option<Order> {
-        let step = |w: &[Level]| {
+    fn order(&self, levels: &[ReferenceLevel], figure: fn(&ReferenceLevel) -> Option<f64>) -> Option<Order> {
+        let step = |w: &[ReferenceLevel]| {
             let ratio = self.board.ratio(&w[1].setting, &w[0].setting);
-            Some(Step { distance: figure(&w[1])?, ratio })
+            Some(RefinementStep { distance: figure(&w[1])?, ratio })
         };
-        let steps: Vec<Step> = levels.windows(2).filter_map(step).collect();
+        let steps: Vec<RefinementStep> = levels.windows(2).filter_map(step).collect();
         let c = convergence(&steps)?;
         Some(Order { order: c.order.is_finite().then_some(c.order), missing_mm: c.missing })
     }
@@ -180,7 +180,7 @@ impl Search<'_> {
     }
 
     /// Why no further level is wanted; none where one is.
-    fn enough(&self, levels: &[Level], left: Duration) -> Option<String> {
+    fn enough(&self, levels: &[ReferenceLevel], left: Duration) -> Option<String> {
         let k = levels.len();
         let last = levels.last()?;
         if self.setting(k).is_none() {
@@ -207,7 +207,7 @@ impl Search<'_> {
         })
     }
 
-    fn after_miss(&self, missed: Missed, levels: &[Level]) -> Result<String, StageError> {
+    fn after_miss(&self, missed: Missed, levels: &[ReferenceLevel]) -> Result<String, StageError> {
         match (missed, levels) {
             (Missed::OverLimit(_), []) => Err(self.allowed.ended_first()),
             (Missed::OverLimit(_), [own]) => Err(self.allowed.unrefined(own.wall_s)),
@@ -220,11 +220,16 @@ impl Search<'_> {
     }
 }
 
-fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Result<Level, StageError> {
+fn level(
+    board: &KnobBoard,
+    setting: Setting,
+    ran: &Ran,
+    before: Option<&Ran>,
+) -> Result<ReferenceLevel, StageError> {
     let moved = before.map(|b| compare(ran, b)).transpose()?;
     let strain = ran.figures.as_ref().map_or(0.0, |f| f.garment.edge_strain.p99);
     let overrides = board.overrides(&setting).into_iter().map(|o| (o.path, o.value)).collect();
-    Ok(Level {
+    Ok(ReferenceLevel {
         setting,
         overrides,
         triangles: ran.garment.triangles.len(),
@@ -238,7 +243,7 @@ fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Re
     })
 }
 
-fn words(k: usize, level: &Level) -> String {
+fn words(k: usize, level: &ReferenceLevel) -> String {
     let setting = setting_words(&level.setting);
     let moved = level.moved_mm.map_or_else(String::new, |m| {
         format!(", moved by {:.2} mm in the mean, {:.2} mm at 95 %", m.mean, m.p95)

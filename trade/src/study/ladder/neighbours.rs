@@ -4,28 +4,28 @@
 //! second order, so what lies farther apart are states of rest that the mesh picks by chance. Moved
 //! starts of one mesh do not tell of those.
 
-use super::{RATIO, Search};
+use super::{RATIO, ReferenceSearch};
 use crate::errors::compare;
 use crate::measure::{Missed, Ran};
-use crate::record::{Level, Neighbours};
+use crate::record::{NeighbourLevels, ReferenceLevel};
 use std::time::{Duration, Instant};
 use toile_core::StageError;
 
 /// By how much resolutions are refined and coarsened, as factors.
 const NEAR: [f64; 2] = [1.02, 1.0 / 1.02];
 
-impl Search<'_> {
+impl ReferenceSearch<'_> {
     /// Runs the level before the last with resolutions near its own, where it has any; `unmoved` is
     /// its garment.
     pub(super) fn neighbours(
         &self,
-        levels: &[Level],
+        levels: &[ReferenceLevel],
         unmoved: &Ran,
         budget: Duration,
         tell: &mut dyn FnMut(String),
-    ) -> Result<Option<Neighbours>, StageError> {
+    ) -> Result<Option<NeighbourLevels>, StageError> {
         let (started, level) = (Instant::now(), levels.len().saturating_sub(2));
-        let mut near = Neighbours { level, ..Neighbours::default() };
+        let mut near = NeighbourLevels { level, ..NeighbourLevels::default() };
         for factor in NEAR {
             let setting = self.board.refined(RATIO.powi(level as i32) * factor);
             // Two parts of an edge are two, a fiftieth more or less.

@@ -1,21 +1,21 @@
 //! How far the garment ends from itself when its start is moved a little.
 
-use super::Search;
+use super::ReferenceSearch;
 use crate::errors::compare;
 use crate::knobs::source::Source;
 use crate::measure::{Bench, Missed, Ran};
-use crate::record::{Level, OwnSpread};
+use crate::record::{OwnSpread, ReferenceLevel};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use toile_core::{Length, StageError};
 use toile_pipeline::Override;
 use toile_pipeline::cache::Cache;
 
-impl Search<'_> {
+impl ReferenceSearch<'_> {
     /// Starts the level before the last again from moved starts.
     pub(super) fn spread(
         &self,
-        levels: &[Level],
+        levels: &[ReferenceLevel],
         unmoved: &Ran,
         tell: &mut dyn FnMut(String),
     ) -> Result<Option<OwnSpread>, StageError> {

@@ -34,8 +34,8 @@ fn the_cause_of_a_run_is_told_field_by_field() {
 
 #[test]
 fn every_ingredient_is_part_of_the_key() {
-    use crate::cache::key::{Fed, Ingredients, Used, with_reads};
-    let fed = |value| Used { port: "photo".into(), from: "A".into(), value };
+    use crate::cache::key::{Fed, FedPort, Ingredients, with_reads};
+    let fed = |value| FedPort { port: "photo".into(), from: "A".into(), value };
     let base = || Ingredients {
         name: "Otsu".into(),
         role: "binariser".into(),
@@ -64,7 +64,7 @@ fn every_ingredient_is_part_of_the_key() {
     keys.dedup();
     assert_eq!(keys.len(), others.len() + 1);
     assert_eq!(Ingredients { inputs: vec![fed(Fed::Unknown)], ..base() }.key(), None);
-    let renamed = Used { from: "B".into(), ..fed(Fed::One(Digest::of(b"photo"))) };
+    let renamed = FedPort { from: "B".into(), ..fed(Fed::One(Digest::of(b"photo"))) };
     assert_eq!(Ingredients { inputs: vec![renamed], ..base() }.key(), base().key(), "ids do not count");
     let key = base().key().unwrap();
     assert_ne!(with_reads(&key, &[]), with_reads(&key, &[("a.jpg".into(), None)]));

@@ -20,10 +20,10 @@ mod rewrite;
 mod tests;
 
 use super::fault::Faults;
-use super::read::Read;
+use super::read::FileContents;
 use super::{parse, read};
 use crate::load::syntax::draft::Draft;
-use crate::load::syntax::tree::{Entry, Tree};
+use crate::load::syntax::tree::{GroupEntry, ValueTree};
 use rewrite::Migrator;
 use std::ops::Range;
 use toile_core::Registry;
@@ -58,15 +58,15 @@ pub fn migrate(text: &str, file: &str, registry: &Registry) -> Result<Migrated, 
 }
 
 /// Whether another stage names a stage by its id.
-fn is_read_from(draft: &Draft, drafts: &Read) -> bool {
+fn is_read_from(draft: &Draft, drafts: &FileContents) -> bool {
     drafts.stages.iter().flat_map(|d| &d.from).any(|(id, _)| *id == draft.id)
 }
 
 /// The value at a place.
-fn find<'t>(tree: &'t Tree, span: &Range<usize>) -> Option<&'t Tree> {
+fn find<'t>(tree: &'t ValueTree, span: &Range<usize>) -> Option<&'t ValueTree> {
     if tree.span == *span {
         return Some(tree);
     }
-    let inside = |t: &&Entry| t.value.span.start <= span.start && span.end <= t.value.span.end;
+    let inside = |t: &&GroupEntry| t.value.span.start <= span.start && span.end <= t.value.span.end;
     find(&tree.entries().iter().find(inside)?.value, span)
 }

@@ -6,25 +6,25 @@
 //! is left.
 
 use super::super::qualities::{Quality, named};
-use super::super::read::Read;
+use super::super::read::FileContents;
 use super::super::{Override, parse};
 use super::is_read_from;
-use super::rewrite::{Edit, Followed, Migrator};
+use super::rewrite::{Followed, Migrator, TextEdit};
 use crate::load::old_name::renamed;
 use crate::load::syntax::draft::Draft;
-use crate::load::syntax::tree::{Entry, Tree};
+use crate::load::syntax::tree::{GroupEntry, ValueTree};
 use std::ops::Range;
 use toile_core::param::ron_text;
 
 /// What becomes of a setting.
-enum Set {
+enum MigratedSetting {
     Same,
     Removed(String),
     Changed(Override),
 }
 
 /// The stage that a setting's path leads to.
-struct Target {
+struct MigratedStage {
     /// How many segments of the path name it.
     segments: usize,
     /// The path to it, as it is after the migration.
@@ -35,14 +35,14 @@ struct Target {
 
 impl Migrator<'_> {
     /// Rewrites the settings of every quality.
-    pub(super) fn qualities(&mut self, tree: &Tree, drafts: &Read) {
+    pub(super) fn qualities(&mut self, tree: &ValueTree, drafts: &FileContents) {
         for quality in named(self.text) {
             let places = quality.places().to_vec();
             for (setting, place) in quality.set.iter().zip(&places) {
                 match self.setting(setting, tree, drafts) {
-                    Set::Same => {}
-                    Set::Changed(new) => self.rewrite(&quality, setting, &new, place),
-                    Set::Removed(why) => self.remove(&quality, setting, why, tree, place),
+                    MigratedSetting::Same => {}
+                    MigratedSetting::Changed(new) => self.rewrite(&quality, setting, &new, place),
+                    MigratedSetting::Removed(why) => self.remove(&quality, setting, why, tree, place),
                 }
             }
         }
@@ -51,18 +51,25 @@ impl Migrator<'_> {
     fn rewrite(&mut self, quality: &Quality, old: &Override, new: &Override, at: &Range<usize>) {
         let (old, new) = (written(old), written(new));
         let what = format!("quality {}: {old} -> {new}", quality.name);
-        self.edits.push(Edit { at: at.clone(), text: ron_text(&new), what });
+        self.edits.push(TextEdit { at: at.clone(), text: ron_text(&new), what });
     }
 
-    fn remove(&mut self, quality: &Quality, old: &Override, why: String, tree: &Tree, at: &Range<usize>) {
+    fn remove(
+        &mut self,
+        quality: &Quality,
+        old: &Override,
+        why: String,
+        tree: &ValueTree,
+        at: &Range<usize>,
+    ) {
         let Some((entries, i)) = entry(tree, at) else { return };
         let what = format!("quality {}: {} removed: {why}", quality.name, written(old));
-        self.edits.push(Edit { at: self.whole(entries, i), text: String::new(), what });
+        self.edits.push(TextEdit { at: self.whole(entries, i), text: String::new(), what });
     }
 
-    fn setting(&self, o: &Override, tree: &Tree, drafts: &Read) -> Set {
+    fn setting(&self, o: &Override, tree: &ValueTree, drafts: &FileContents) -> MigratedSetting {
         let segments: Vec<&str> = o.path.split('.').collect();
-        let Some(target) = self.target(&segments, tree, drafts) else { return Set::Same };
+        let Some(target) = self.target(&segments, tree, drafts) else { return MigratedSetting::Same };
         let mut new = Override { path: target.path.clone(), value: o.value.clone() };
         match &segments[target.segments..] {
             [] => new.value = self.whole_stage(&o.value),
@@ -72,7 +79,7 @@ impl Migrator<'_> {
                     .flatten()
                     .collect();
                 let (param, value) = match self.followed(&stages, param, &o.value) {
-                    Followed::Removed(why) => return Set::Removed(why.to_owned()),
+                    Followed::Removed(why) => return MigratedSetting::Removed(why.to_owned()),
                     Followed::Renamed(name, value) if parts.is_empty() => (name, value),
                     Followed::Renamed(name, _) => (name, o.value.clone()),
                     Followed::Same => ((*param).to_owned(), o.value.clone()),
@@ -81,27 +88,27 @@ impl Migrator<'_> {
                 new.value = value;
             }
         }
-        if new == *o { Set::Same } else { Set::Changed(new) }
+        if new == *o { MigratedSetting::Same } else { MigratedSetting::Changed(new) }
     }
 
     /// The stage of the file that a path leads to: one of the list by its id, or a section. An id
     /// that the file has not may be that of a stage which an earlier setting puts there.
-    fn target(&self, segments: &[&str], tree: &Tree, drafts: &Read) -> Option<Target> {
+    fn target(&self, segments: &[&str], tree: &ValueTree, drafts: &FileContents) -> Option<MigratedStage> {
         if segments.first() == Some(&"stages") {
             let id = *segments.get(1)?;
             let draft = drafts.stages.iter().find(|d| d.id == id);
             let stage = draft.map_or(id, |d| d.name.as_str()).to_owned();
             let path = format!("stages.{}", self.new_id(id, draft, drafts));
-            return Some(Target { segments: 2, path, stage });
+            return Some(MigratedStage { segments: 2, path, stage });
         }
         let field = *segments.first()?;
-        let is_field = |e: &&Entry| e.key.as_ref().is_some_and(|k| self.at(k) == field);
+        let is_field = |e: &&GroupEntry| e.key.as_ref().is_some_and(|k| self.at(k) == field);
         let value = &tree.entries().iter().find(is_field)?.value;
         let draft = drafts.sections.iter().find(|d| d.span == value.span && !d.is_table)?;
-        Some(Target { segments: 1, path: field.to_owned(), stage: draft.name.clone() })
+        Some(MigratedStage { segments: 1, path: field.to_owned(), stage: draft.name.clone() })
     }
 
-    fn new_id(&self, id: &str, draft: Option<&Draft>, drafts: &Read) -> String {
+    fn new_id(&self, id: &str, draft: Option<&Draft>, drafts: &FileContents) -> String {
         let is_own = draft.is_some_and(|d| d.given_id.is_some() || is_read_from(d, drafts) || d.name != id);
         let new = if is_own { None } else { renamed(self.registry, id) };
         new.unwrap_or(id).to_owned()
@@ -123,12 +130,12 @@ fn written(o: &Override) -> String {
 }
 
 /// The list that an entry stands in, and its number.
-fn entry<'t>(tree: &'t Tree, at: &Range<usize>) -> Option<(&'t [Entry], usize)> {
+fn entry<'t>(tree: &'t ValueTree, at: &Range<usize>) -> Option<(&'t [GroupEntry], usize)> {
     let entries = tree.entries();
     match entries.iter().position(|e| e.value.span == *at) {
         Some(i) => Some((entries, i)),
         None => {
-            let covers = |e: &&Entry| e.value.span.start <= at.start && at.end <= e.value.span.end;
+            let covers = |e: &&GroupEntry| e.value.span.start <= at.start && at.end <= e.value.span.end;
             entry(&entries.iter().find(covers)?.value, at)
         }
     }

@@ -1,13 +1,13 @@
 //! Edits of a file's text at the places that the syntax tree knows.
 
 use super::Migrated;
-use crate::load::fault::{Fault, Lines};
+use crate::load::fault::{Fault, LineStarts};
 use crate::load::old_name::renamed;
-use crate::load::syntax::tree::{Entry, Shape, Tree};
+use crate::load::syntax::tree::{GroupEntry, ValueShape, ValueTree};
 use std::ops::Range;
 use toile_core::{Change, Registry};
 
-pub(super) struct Edit {
+pub(super) struct TextEdit {
     pub(super) at: Range<usize>,
     pub(super) text: String,
     pub(super) what: String,
@@ -26,7 +26,7 @@ pub(super) enum Followed {
 pub(super) struct Migrator<'a> {
     pub(super) text: &'a str,
     pub(super) registry: &'a Registry,
-    pub(super) edits: Vec<Edit>,
+    pub(super) edits: Vec<TextEdit>,
     pub(super) faults: Vec<Fault>,
 }
 
@@ -36,21 +36,21 @@ impl Migrator<'_> {
     }
 
     /// A stage; `id` is its id where another stage names it, which must stay.
-    pub(super) fn stage(&mut self, tree: &Tree, id: Option<&str>) {
+    pub(super) fn stage(&mut self, tree: &ValueTree, id: Option<&str>) {
         let (span, entries) = match &tree.shape {
-            Shape::Group { name: Some(name), entries, .. } => (name.clone(), entries.as_slice()),
-            Shape::Name => (tree.span.clone(), &[][..]),
+            ValueShape::Group { name: Some(name), entries, .. } => (name.clone(), entries.as_slice()),
+            ValueShape::Name => (tree.span.clone(), &[][..]),
             _ => return,
         };
         let old = self.at(&span).to_owned();
         let new = renamed(self.registry, &old);
         if let Some(new) = new {
             let what = format!("stage {old} -> {new}");
-            self.edits.push(Edit { at: span, text: new.to_owned(), what });
-            if let (Some(id), Shape::Group { inside, .. }) = (id, &tree.shape) {
+            self.edits.push(TextEdit { at: span, text: new.to_owned(), what });
+            if let (Some(id), ValueShape::Group { inside, .. }) = (id, &tree.shape) {
                 let comma = if entries.is_empty() { "" } else { ", " };
                 let what = format!("{new}: keeps its id, which others read from");
-                self.edits.push(Edit { at: *inside..*inside, text: format!("id: {id:?}{comma}"), what });
+                self.edits.push(TextEdit { at: *inside..*inside, text: format!("id: {id:?}{comma}"), what });
             }
         }
         let names = [Some(old.as_str()), new];
@@ -79,7 +79,7 @@ impl Migrator<'_> {
     }
 
     /// One argument of a stage that has had these names.
-    fn argument(&mut self, stages: Vec<&str>, entries: &[Entry], i: usize, entry: &Entry) {
+    fn argument(&mut self, stages: Vec<&str>, entries: &[GroupEntry], i: usize, entry: &GroupEntry) {
         let Some(key) = &entry.key else { return };
         let (old, mut value) = (self.at(key).to_owned(), self.at(&entry.value.span).to_owned());
         let stage = stages.last().copied().unwrap_or("");
@@ -87,7 +87,7 @@ impl Migrator<'_> {
             Followed::Same => return,
             Followed::Removed(why) => {
                 let what = format!("{stage}: {old} removed: {why}");
-                self.edits.push(Edit { at: self.whole(entries, i), text: String::new(), what });
+                self.edits.push(TextEdit { at: self.whole(entries, i), text: String::new(), what });
                 return;
             }
             Followed::Renamed(name, new) => {
@@ -106,15 +106,15 @@ impl Migrator<'_> {
             true => format!("{stage}: {old} -> {name}"),
             false => format!("{stage}: {old}: {} -> {name}: {value}", self.at(&entry.value.span)),
         };
-        self.edits.push(Edit { at: key.clone(), text: name, what });
+        self.edits.push(TextEdit { at: key.clone(), text: name, what });
         if !same {
-            self.edits.push(Edit { at: entry.value.span.clone(), text: value, what: String::new() });
+            self.edits.push(TextEdit { at: entry.value.span.clone(), text: value, what: String::new() });
         }
     }
 
     /// The place of an argument with its comma and the white space that only it needed; comments
     /// stay.
-    pub(super) fn whole(&self, entries: &[Entry], i: usize) -> Range<usize> {
+    pub(super) fn whole(&self, entries: &[GroupEntry], i: usize) -> Range<usize> {
         let entry = &entries[i];
         let mut start = entry.key.as_ref().map_or(entry.value.span.start, |k| k.start);
         let mut end = entry.value.span.end;
@@ -141,8 +141,8 @@ impl Migrator<'_> {
 
     pub(super) fn finish(mut self) -> Migrated {
         self.edits.sort_by_key(|e| (e.at.start, e.at.end));
-        let lines = Lines::of(self.text);
-        let place = |e: &Edit| lines.position(self.text, e.at.start).0;
+        let lines = LineStarts::of(self.text);
+        let place = |e: &TextEdit| lines.position(self.text, e.at.start).0;
         let told = self.edits.iter().filter(|e| !e.what.is_empty());
         let changes = told.map(|e| format!("line {}: {}", place(e), e.what)).collect();
         let (mut text, mut done) = (String::with_capacity(self.text.len()), 0);

@@ -19,7 +19,7 @@ use super::Quality;
 use crate::file_hash::file_hash;
 use crate::load::Pipeline;
 use crate::load::parse;
-use crate::load::syntax::tree::Tree;
+use crate::load::syntax::tree::ValueTree;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -143,7 +143,7 @@ fn digest(pipeline: &Pipeline, node: &Node, before: &[[u8; 32]]) -> [u8; 32] {
 
 /// Parameters with the digest of its content in the place of each file that is there.
 fn by_content(params: &str, base: &Path) -> String {
-    fn walk(params: &str, tree: &Tree, base: &Path, out: &mut Vec<(std::ops::Range<usize>, String)>) {
+    fn walk(params: &str, tree: &ValueTree, base: &Path, out: &mut Vec<(std::ops::Range<usize>, String)>) {
         let written = params.get(tree.span.clone()).filter(|t| t.starts_with(['"', 'r']));
         let text = written.and_then(|t| toile_core::param::ron_options().from_str::<String>(t).ok());
         let file = text.filter(|t| !t.is_empty()).and_then(|t| file_hash(&base.join(t)));

@@ -2,7 +2,7 @@
 
 use super::{Basis, MAX_QUALITIES, MAX_SETTINGS, Quality};
 use crate::load::fault::Fault;
-use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, GroupEntry, ValueShape, ValueTree};
 use crate::load::{Override, parse};
 use std::ops::Range;
 use toile_core::Length;
@@ -14,8 +14,8 @@ const FIELDS: [&str; 5] = ["name", "max_error", "set", "measured", "measured_for
 const FORM: &str = "Quality(name: \"Draft\", max_error: \"10 mm\", set: [...])";
 
 /// Reads the field's value; an entry with a fault is left out.
-pub(in crate::load) fn read(text: &str, value: &Tree, faults: &mut Vec<Fault>) -> Vec<Quality> {
-    let Shape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
+pub(in crate::load) fn read(text: &str, value: &ValueTree, faults: &mut Vec<Fault>) -> Vec<Quality> {
+    let ValueShape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
         let fault = Fault::new("bad_value", "`qualities` wants a list").at(&value.head(), "");
         faults.push(fault.hint(format!("write `qualities: [{FORM}]`")));
         return Vec::new();
@@ -26,7 +26,7 @@ pub(in crate::load) fn read(text: &str, value: &Tree, faults: &mut Vec<Fault>) -
     }
     let mut qualities: Vec<Quality> = Vec::new();
     for entry in entries.iter().take(MAX_QUALITIES) {
-        let Some(quality) = (Reader { text, faults }).quality(&entry.value) else { continue };
+        let Some(quality) = (QualityReader { text, faults }).quality(&entry.value) else { continue };
         match qualities.iter().find(|q| q.name == quality.name) {
             Some(first) => {
                 let message = format!("two qualities are called `{}`", quality.name);
@@ -46,8 +46,8 @@ pub(in crate::load) fn named(text: &str) -> Vec<Quality> {
 }
 
 /// The field in a file's tree.
-pub(super) fn field<'t>(text: &str, tree: &'t Tree) -> Option<&'t Entry> {
-    let is_it = |e: &&Entry| e.key.as_ref().and_then(|k| text.get(k.clone())) == Some("qualities");
+pub(super) fn field<'t>(text: &str, tree: &'t ValueTree) -> Option<&'t GroupEntry> {
+    let is_it = |e: &&GroupEntry| e.key.as_ref().and_then(|k| text.get(k.clone())) == Some("qualities");
     tree.entries().iter().find(is_it)
 }
 
@@ -78,12 +78,12 @@ pub(in crate::load) fn choose(
 }
 
 /// One entry on its way.
-struct Reader<'a> {
+struct QualityReader<'a> {
     text: &'a str,
     faults: &'a mut Vec<Fault>,
 }
 
-impl Reader<'_> {
+impl QualityReader<'_> {
     fn fault(&mut self, code: &'static str, message: impl Into<String>, at: &Range<usize>) {
         self.faults.push(Fault::new(code, message).at(at, ""));
     }
@@ -92,9 +92,9 @@ impl Reader<'_> {
         self.text.get(span.clone()).unwrap_or("")
     }
 
-    fn quality(&mut self, value: &Tree) -> Option<Quality> {
+    fn quality(&mut self, value: &ValueTree) -> Option<Quality> {
         let (name, entries) = match &value.shape {
-            Shape::Group { name: Some(name), bracket: Bracket::Round, entries, .. }
+            ValueShape::Group { name: Some(name), bracket: Bracket::Round, entries, .. }
                 if self.at(name) == "Quality" =>
             {
                 (name.clone(), entries)
@@ -127,7 +127,7 @@ impl Reader<'_> {
     }
 
     /// Reports fields that there are not, that are given twice, or that have no name.
-    fn known(&mut self, entries: &[Entry]) {
+    fn known(&mut self, entries: &[GroupEntry]) {
         let mut seen: Vec<(&str, &Range<usize>)> = Vec::new();
         for entry in entries {
             let Some(key) = &entry.key else {
@@ -146,12 +146,12 @@ impl Reader<'_> {
         }
     }
 
-    fn field<'t>(&self, entries: &'t [Entry], name: &str) -> Option<&'t Tree> {
-        let is_it = |e: &&Entry| e.key.as_ref().is_some_and(|k| self.at(k) == name);
+    fn field<'t>(&self, entries: &'t [GroupEntry], name: &str) -> Option<&'t ValueTree> {
+        let is_it = |e: &&GroupEntry| e.key.as_ref().is_some_and(|k| self.at(k) == name);
         entries.iter().find(is_it).map(|e| &e.value)
     }
 
-    fn words(&mut self, field: &str, value: &Tree) -> Option<String> {
+    fn words(&mut self, field: &str, value: &ValueTree) -> Option<String> {
         let parsed = ron_options().from_str(self.at(&value.span)).ok();
         if parsed.is_none() && !value.is_broken {
             self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
@@ -159,13 +159,13 @@ impl Reader<'_> {
         parsed
     }
 
-    fn basis(&mut self, value: &Tree) -> Option<Basis> {
+    fn basis(&mut self, value: &ValueTree) -> Option<Basis> {
         let words = self.words("measured_for", value)?;
         let parsed = words.parse::<Basis>();
         parsed.map_err(|why| self.fault("bad_value", format!("`measured_for`: {why}"), &value.span)).ok()
     }
 
-    fn name(&mut self, value: &Tree) -> Option<String> {
+    fn name(&mut self, value: &ValueTree) -> Option<String> {
         let name = self.words("name", value)?;
         if Quality::is_name(&name) {
             return Some(name);
@@ -175,7 +175,7 @@ impl Reader<'_> {
         None
     }
 
-    fn length(&mut self, value: &Tree) -> Option<Length> {
+    fn length(&mut self, value: &ValueTree) -> Option<Length> {
         let words = self.words("max_error", value)?;
         let message = match words.parse::<Length>() {
             Ok(length) if length.metres() > 0.0 => return Some(length),
@@ -187,8 +187,8 @@ impl Reader<'_> {
     }
 
     /// The list of `PATH=VALUE`, each with its place; none where one of them has a fault.
-    fn settings(&mut self, value: &Tree) -> Option<Vec<(Override, Range<usize>)>> {
-        let Shape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
+    fn settings(&mut self, value: &ValueTree) -> Option<Vec<(Override, Range<usize>)>> {
+        let ValueShape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
             let fault = Fault::new("bad_value", "`set` wants a list of texts").at(&value.head(), "");
             let form = "write `set: [\"stages.GridMesher.edge=\\\"24 mm\\\"\"]`";
             self.faults.push(fault.hint(form.to_owned()));
@@ -199,7 +199,7 @@ impl Reader<'_> {
             self.fault("too_large", message, &extra.value.head());
             return None;
         }
-        let one = |e: &Entry| {
+        let one = |e: &GroupEntry| {
             let words = self.words("set", &e.value)?;
             match words.parse::<Override>() {
                 Ok(change) => Some((change, e.value.span.clone())),

@@ -4,7 +4,7 @@ use super::read::field;
 use super::{Quality, named};
 use crate::load::fault::Fault;
 use crate::load::parse;
-use crate::load::syntax::tree::{Entry, Shape, Tree};
+use crate::load::syntax::tree::{GroupEntry, ValueShape, ValueTree};
 use std::ops::Range;
 use toile_core::param::ron_text;
 
@@ -25,7 +25,7 @@ pub fn fill(text: &str, qualities: &[Quality]) -> Result<String, Box<Fault>> {
 /// Errors: the text is no RON.
 pub fn without(text: &str) -> Result<String, Box<Fault>> {
     let tree = parse(text).map_err(Box::new)?;
-    let Some(Entry { key: Some(key), value }) = field(text, &tree) else { return Ok(text.to_owned()) };
+    let Some(GroupEntry { key: Some(key), value }) = field(text, &tree) else { return Ok(text.to_owned()) };
     let comma = comma_after(text, value.span.end).unwrap_or(value.span.end);
     Ok(cut(text, key.start..comma))
 }
@@ -47,14 +47,14 @@ fn put(text: &str, quality: &Quality) -> Result<String, Box<Fault>> {
     let tree = parse(text).map_err(Box::new)?;
     let wrong =
         || Box::new(Fault::new("not_a_pipeline", "the text is no pipeline file").at(&tree.head(), ""));
-    let Some(Entry { value, .. }) = field(text, &tree) else {
-        let Shape::Group { entries, .. } = &tree.shape else { return Err(wrong()) };
+    let Some(GroupEntry { value, .. }) = field(text, &tree) else {
+        let ValueShape::Group { entries, .. } = &tree.shape else { return Err(wrong()) };
         let block = format!("    qualities: [\n{}\n    ],\n", written(quality));
         return Ok(last_in(text, &tree, entries, &block));
     };
-    let Shape::Group { entries, .. } = &value.shape else { return Err(wrong()) };
+    let ValueShape::Group { entries, .. } = &value.shape else { return Err(wrong()) };
     let same = named(text).into_iter().find(|q| q.name == quality.name);
-    let is_it = |e: &&Entry| same.as_ref().is_some_and(|q| covers(&e.value.span, &q.place));
+    let is_it = |e: &&GroupEntry| same.as_ref().is_some_and(|q| covers(&e.value.span, &q.place));
     match entries.iter().find(is_it) {
         Some(entry) => {
             let new = written(quality);
@@ -94,7 +94,7 @@ fn written(quality: &Quality) -> String {
 
 /// Puts whole lines last into a group, before its closing bracket, with a comma behind what stands
 /// before.
-fn last_in(text: &str, group: &Tree, entries: &[Entry], lines: &str) -> String {
+fn last_in(text: &str, group: &ValueTree, entries: &[GroupEntry], lines: &str) -> String {
     let close = group.span.end.saturating_sub(1);
     let comma = entries.last().map(|e| e.value.span.end).filter(|end| comma_after(text, *end).is_none());
     let mut out = text.to_owned();

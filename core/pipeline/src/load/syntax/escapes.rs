@@ -6,7 +6,7 @@
 //! well.
 
 use crate::load::fault::Fault;
-use crate::load::syntax::tree::{Shape, Tree};
+use crate::load::syntax::tree::{ValueShape, ValueTree};
 use std::ops::Range;
 
 /// The longest text that a hint writes anew, bytes.
@@ -76,17 +76,17 @@ fn remedy(content: &str) -> String {
 
 /// Reports every text with a control character that is written as an escape; such a text is broken,
 /// and nothing more is said of it.
-pub(crate) fn controls(text: &str, tree: &mut Tree, faults: &mut Vec<Fault>) {
+pub(crate) fn controls(text: &str, tree: &mut ValueTree, faults: &mut Vec<Fault>) {
     let before = faults.len();
     match &mut tree.shape {
-        Shape::Literal => faults.extend(control(text, &tree.span)),
-        Shape::Group { entries, .. } => {
+        ValueShape::Literal => faults.extend(control(text, &tree.span)),
+        ValueShape::Group { entries, .. } => {
             for entry in entries {
                 faults.extend(entry.key.iter().filter_map(|key| control(text, key)));
                 controls(text, &mut entry.value, faults);
             }
         }
-        Shape::Name | Shape::Broken => {}
+        ValueShape::Name | ValueShape::Broken => {}
     }
     tree.is_broken |= faults.len() > before;
 }

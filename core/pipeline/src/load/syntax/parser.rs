@@ -8,10 +8,10 @@
 mod meant;
 mod repairs;
 
-pub(crate) use repairs::{Meant, Repairs, SyntaxFault};
+pub(crate) use repairs::{Meant, SyntaxFault, TextRepairs};
 
 use crate::load::syntax::escapes;
-use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, GroupEntry, ValueShape, ValueTree};
 use repairs::Repair;
 use std::ops::Range;
 
@@ -19,12 +19,12 @@ use std::ops::Range;
 pub(crate) const MAX_DEPTH: usize = 60;
 
 /// Parses a whole text: one value, with comments and white space around it.
-pub(crate) fn parse(text: &str) -> Result<Tree, SyntaxFault> {
-    repaired(text, &Repairs::default())
+pub(crate) fn parse(text: &str) -> Result<ValueTree, SyntaxFault> {
+    repaired(text, &TextRepairs::default())
 }
 
 /// Parses a text as it is with the repairs.
-pub(crate) fn repaired(text: &str, repairs: &Repairs) -> Result<Tree, SyntaxFault> {
+pub(crate) fn repaired(text: &str, repairs: &TextRepairs) -> Result<ValueTree, SyntaxFault> {
     let mut p = Parser {
         text,
         at: 0,
@@ -69,7 +69,7 @@ struct Parser<'a> {
     first: usize,
     /// True after a bracket that a repair closed: its comma may stand before that place.
     lenient: bool,
-    repairs: Repairs,
+    repairs: TextRepairs,
 }
 
 impl<'a> Parser<'a> {
@@ -150,7 +150,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn value(&mut self, depth: usize) -> Result<Tree, SyntaxFault> {
+    fn value(&mut self, depth: usize) -> Result<ValueTree, SyntaxFault> {
         self.space()?;
         let from = self.at;
         if depth > MAX_DEPTH {
@@ -158,7 +158,7 @@ impl<'a> Parser<'a> {
         }
         if let Some(end) = self.repairs.values.get(&self.at) {
             self.at = *end;
-            return Ok(Tree::new(from..self.at, Shape::Broken));
+            return Ok(ValueTree::new(from..self.at, ValueShape::Broken));
         }
         let Some(c) = self.peek() else {
             return Err(fault("expected a value, found the end of the file", self.here()));
@@ -167,7 +167,7 @@ impl<'a> Parser<'a> {
             return self.group(None, from, bracket, depth);
         }
         if self.literal(c)? {
-            return Ok(Tree::new(from..self.at, Shape::Literal));
+            return Ok(ValueTree::new(from..self.at, ValueShape::Literal));
         }
         let Some(name) = self.name() else {
             let fault = fault(format!("expected a value, found {}", self.found()), self.here());
@@ -181,7 +181,7 @@ impl<'a> Parser<'a> {
             Some('(') => self.group(Some(name), from, Bracket::Round, depth),
             _ => {
                 self.at = name.end;
-                Ok(Tree::new(name, Shape::Name))
+                Ok(ValueTree::new(name, ValueShape::Name))
             }
         }
     }
@@ -271,7 +271,7 @@ impl<'a> Parser<'a> {
         from: usize,
         bracket: Bracket,
         depth: usize,
-    ) -> Result<Tree, SyntaxFault> {
+    ) -> Result<ValueTree, SyntaxFault> {
         let opened = self.here();
         self.at = opened.end;
         let (inside, mut entries) = (self.at, Vec::new());
@@ -293,7 +293,7 @@ impl<'a> Parser<'a> {
                 return Err(self.after_entry(bracket, &opened, &entries));
             }
         }
-        Ok(Tree::new(from..self.at, Shape::Group { name, bracket, inside, entries }))
+        Ok(ValueTree::new(from..self.at, ValueShape::Group { name, bracket, inside, entries }))
     }
 
     /// Whether the bracket ends here.
@@ -308,7 +308,7 @@ impl<'a> Parser<'a> {
         &mut self,
         bracket: Bracket,
         opened: &Range<usize>,
-        entries: &[Entry],
+        entries: &[GroupEntry],
     ) -> Result<bool, SyntaxFault> {
         if let Some(times) = self.repairs.closes.get_mut(&self.at) {
             *times -= 1;
@@ -331,13 +331,13 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn entry(&mut self, bracket: Bracket, depth: usize) -> Result<Entry, SyntaxFault> {
+    fn entry(&mut self, bracket: Bracket, depth: usize) -> Result<GroupEntry, SyntaxFault> {
         let key = match bracket {
             Bracket::Square => None,
             Bracket::Round => self.field()?,
             Bracket::Curly => Some(self.key(depth)?),
         };
-        Ok(Entry { key, value: self.value(depth + 1)? })
+        Ok(GroupEntry { key, value: self.value(depth + 1)? })
     }
 
     /// `name:`, if that is what comes.

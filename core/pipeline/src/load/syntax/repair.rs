@@ -7,8 +7,8 @@
 //! to [`MAX_REPAIRED`]; where nothing helps, the rest of the text is not read.
 
 use crate::load::fault::Fault;
-use crate::load::syntax::parser::{Meant, Repairs, SyntaxFault, repaired};
-use crate::load::syntax::tree::Tree;
+use crate::load::syntax::parser::{Meant, SyntaxFault, TextRepairs, repaired};
+use crate::load::syntax::tree::ValueTree;
 
 /// The most faults of syntax that are told at once.
 const MAX_SYNTAX: usize = 12;
@@ -17,8 +17,8 @@ const MAX_SYNTAX: usize = 12;
 const MAX_REPAIRED: usize = 1 << 18;
 
 /// The tree of a text, and its faults of syntax; no tree where the text cannot be understood.
-pub(crate) fn read(text: &str) -> (Option<Tree>, Vec<Fault>) {
-    let (mut repairs, mut faults) = (Repairs::default(), Vec::new());
+pub(crate) fn read(text: &str) -> (Option<ValueTree>, Vec<Fault>) {
+    let (mut repairs, mut faults) = (TextRepairs::default(), Vec::new());
     loop {
         let fault = match repaired(text, &repairs) {
             Ok(mut tree) => {
@@ -37,8 +37,8 @@ pub(crate) fn read(text: &str) -> (Option<Tree>, Vec<Fault>) {
 }
 
 /// What was meant: that with which the parser comes farthest, beyond the fault.
-fn best(text: &str, repairs: &Repairs, fault: &SyntaxFault) -> Option<(Meant, Repairs)> {
-    let mut best: Option<(usize, Meant, Repairs)> = None;
+fn best(text: &str, repairs: &TextRepairs, fault: &SyntaxFault) -> Option<(Meant, TextRepairs)> {
+    let mut best: Option<(usize, Meant, TextRepairs)> = None;
     for meant in &fault.meant {
         let tried = repairs.with(&meant.repair);
         let reached = match repaired(text, &tried) {

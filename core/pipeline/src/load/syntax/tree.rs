@@ -4,11 +4,11 @@ use std::ops::Range;
 
 /// A value and its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Tree {
+pub(crate) struct ValueTree {
     /// From its first to its last character.
     pub(crate) span: Range<usize>,
     /// What it is.
-    pub(crate) shape: Shape,
+    pub(crate) shape: ValueShape,
     /// True where something in it has a fault of syntax, which was told: nothing more is to be said
     /// of its text.
     pub(crate) is_broken: bool,
@@ -16,7 +16,7 @@ pub(crate) struct Tree {
 
 /// What a value is.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Shape {
+pub(crate) enum ValueShape {
     /// A number, a text or a character.
     Literal,
     /// A bare name: `Otsu`, `true`.
@@ -32,7 +32,7 @@ pub(crate) enum Shape {
         /// The byte after the opening bracket.
         inside: usize,
         /// What stands in it.
-        entries: Vec<Entry>,
+        entries: Vec<GroupEntry>,
     },
 }
 
@@ -46,28 +46,28 @@ pub(crate) enum Bracket {
 
 /// One value of a group, with its field name or map key.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Entry {
+pub(crate) struct GroupEntry {
     pub(crate) key: Option<Range<usize>>,
-    pub(crate) value: Tree,
+    pub(crate) value: ValueTree,
 }
 
-impl Tree {
+impl ValueTree {
     /// Its entries; none for a literal or a name.
-    pub(crate) fn entries(&self) -> &[Entry] {
+    pub(crate) fn entries(&self) -> &[GroupEntry] {
         match &self.shape {
-            Shape::Group { entries, .. } => entries,
+            ValueShape::Group { entries, .. } => entries,
             _ => &[],
         }
     }
 
     /// A value in which nothing is broken.
-    pub(crate) fn new(span: Range<usize>, shape: Shape) -> Self {
-        Tree { span, shape, is_broken: false }
+    pub(crate) fn new(span: Range<usize>, shape: ValueShape) -> Self {
+        ValueTree { span, shape, is_broken: false }
     }
 
     /// The entry of that key, or of that number where entries have none.
-    pub(crate) fn entry(&self, text: &str, name: &str) -> Option<&Entry> {
-        let is_it = |(i, e): &(usize, &Entry)| match &e.key {
+    pub(crate) fn entry(&self, text: &str, name: &str) -> Option<&GroupEntry> {
+        let is_it = |(i, e): &(usize, &GroupEntry)| match &e.key {
             Some(key) => text.get(key.clone()).is_some_and(|k| k.trim_matches('"') == name),
             None => i.to_string() == name,
         };
@@ -77,8 +77,8 @@ impl Tree {
     /// What to underline where a whole group would be too much: its name, or its bracket.
     pub(crate) fn head(&self) -> Range<usize> {
         match &self.shape {
-            Shape::Group { name: Some(name), .. } => name.clone(),
-            Shape::Group { .. } => self.span.start..self.span.start + 1,
+            ValueShape::Group { name: Some(name), .. } => name.clone(),
+            ValueShape::Group { .. } => self.span.start..self.span.start + 1,
             _ => self.span.clone(),
         }
     }
@@ -95,13 +95,13 @@ impl Tree {
             tree = &e.value;
         }
         match &tree.shape {
-            Shape::Group { name: Some(name), .. } if name.contains(&at) => (name.clone(), key),
+            ValueShape::Group { name: Some(name), .. } if name.contains(&at) => (name.clone(), key),
             _ => (tree.span.clone(), key),
         }
     }
 }
 
-fn covers(e: &Entry, at: usize) -> bool {
+fn covers(e: &GroupEntry, at: usize) -> bool {
     let from = e.key.as_ref().map_or(e.value.span.start, |k| k.start);
     (from..e.value.span.end).contains(&at)
 }

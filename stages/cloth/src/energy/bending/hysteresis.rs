@@ -10,6 +10,7 @@
 //! that hardly stretches curves only along its normal. Cost: a few operations a hinge.
 
 use super::quadratic::{Fold, folds};
+use crate::contact::coulomb::SLIP_RETURN;
 use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};
 use crate::fabric::Rigidity;
 use crate::mesh::{Edge, Side};
@@ -19,10 +20,6 @@ use rayon::prelude::*;
 /// The turn at which friction is 0.7 of the couple, as a share of the couple over the rigidity.
 /// Friction adds 1 / `SLIP_TOLERANCE` of its rigidity to the stiffness of a small fold.
 const SLIP_TOLERANCE: f64 = 0.4;
-
-/// Turn at which a turning fold drags its angle behind it, in slip tolerances. Friction is then
-/// half of the couple, as on the body.
-const SLIP_RETURN: f64 = 0.577;
 
 /// Hinges per parallel task.
 const TASK: usize = 4096;

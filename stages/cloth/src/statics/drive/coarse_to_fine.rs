@@ -5,13 +5,16 @@
 //! Newton's method on each level (see `newton/to_rest`). Limits: a level that is too coarse for the
 //! body or its seams is reported, and the caller tries again on a finer one (see `solve`).
 
+use crate::contact::collision_surface::CollisionSurface;
 use crate::error::ClothError;
 use crate::mesh::Sheet;
 use crate::statics::drive::plan::Plan;
 use crate::statics::factor::multifrontal::Halt;
-use crate::statics::forces::clearance::{Clearance, clearance};
+use crate::statics::forces::body_contact::BodyContact;
+use crate::statics::forces::clearance::{Clearance, clearance, lifted};
 use crate::statics::forces::penetration::pierced;
-use crate::statics::forces::seam_force::{widest, widest_open_seam};
+use crate::statics::forces::seam_force::{SeamForces, widest};
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::assemble::{KEPT_FORCE, strongest};
 use crate::statics::levels::cloths::pieces_of;
@@ -27,7 +30,13 @@ use std::time::Instant;
 type Vec3 = Vector3<f64>;
 
 /// Rounds at most in which nodes are moved out where triangles dip into the body.
-const CLEARANCE_ROUNDS: usize = 8;
+const CLEARANCE_ROUNDS: usize = 12;
+
+/// Dips that are less deep than this after a round are moved out without regard to forces, m.
+const SHALLOW_DIP: f64 = 1e-4;
+
+/// Farthest that a node is moved so, m.
+const FARTHEST_LIFT: f64 = 1e-3;
 
 /// First step of pseudo-time in such a round, in which the cloth hardly moves, s.
 const CLEARANCE_STEP: f64 = 0.2;
@@ -55,6 +64,8 @@ pub(crate) enum Draped {
 pub(crate) struct LevelMesh<'m> {
     /// The level index, from fine to coarse.
     pub(crate) k: usize,
+    /// Whether the seams are open, so that every vertex is a node.
+    pub(crate) is_open: bool,
     /// The open or sewn sheet.
     pub(crate) sheet: &'m Sheet,
     /// The places that order the elimination.
@@ -120,6 +131,8 @@ impl<'a> Solve<'a> {
     }
 
     /// Moves nodes out where triangles between them dip into the body, and relaxes the cloth again.
+    /// What is left of some hundredths of a millimetre, as in the crease of an armpit, is moved out
+    /// without regard to forces.
     pub(crate) fn restore_clearance(
         &mut self,
         mesh: LevelMesh<'_>,
@@ -128,24 +141,40 @@ impl<'a> Solve<'a> {
         options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
+        let Some(body) = self.plan.body else { return Ok(()) };
         let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
-        for _ in 0..CLEARANCE_ROUNDS {
-            let Some(Clearance { lacks, depth, triangles }) =
-                self.plan.body.map(|c| clearance(mesh.sheet, c.surface, x))
-            else {
-                break;
-            };
+        for round in 0..CLEARANCE_ROUNDS {
+            let Clearance { lacks, depth, triangles, .. } = clearance(mesh.sheet, body.surface, x);
             if triangles == 0 {
                 self.dip = Some(depth);
                 break;
             }
-            if let Some(contact) = &mut system.body_contact {
+            if round > 0 && depth < SHALLOW_DIP && self.lift(mesh, body.surface, &system.pinned, x) {
+                break;
+            }
+            if let Some(contact) = system.get_mut::<BodyContact>() {
                 contact.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
             let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
             self.reports.push(report);
         }
         Ok(())
+    }
+
+    /// Moves nodes out of the body without regard to forces, where cloth does not cross more cloth
+    /// then; returns whether it did.
+    fn lift(
+        &self,
+        mesh: LevelMesh<'_>,
+        body: &dyn CollisionSurface,
+        pinned: &[bool],
+        x: &mut [Vec3],
+    ) -> bool {
+        let lifted = lifted(mesh.sheet, body, x, pinned, FARTHEST_LIFT);
+        let crossings = |x: &[Vec3]| self.crossings(mesh.sheet, x);
+        let Some(lifted) = lifted.filter(|lifted| crossings(lifted) <= crossings(x)) else { return false };
+        x.copy_from_slice(&lifted);
+        true
     }
 
     /// The equilibrium of the finest level, with its nodes at `x`.
@@ -165,7 +194,8 @@ impl<'a> Solve<'a> {
         let slides = self.plan.pieces[0].spread(&system.displacements(&x));
         let offsets = self.plan.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
-        let friction_contacts = system.self_contact.take().map_or_else(Vec::new, |c| c.friction_contacts);
+        let own = system.get_mut::<SelfContact>().map(|c| &mut c.friction_contacts);
+        let friction_contacts = own.map(std::mem::take).unwrap_or_default();
         let state = Equilibrium {
             positions,
             outcome,
@@ -211,9 +241,9 @@ impl<'a> Solve<'a> {
         done: &dyn Fn(&System<'_>, &[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
-        let LevelMesh { k, sheet, layout } = mesh;
-        let sewing = self.joined_at.is_none() && !system.seam_forces.is_empty();
-        let meets = system.self_contact.is_some() && !(sewing && self.sews_through);
+        let LevelMesh { k, sheet, layout, .. } = mesh;
+        let sewing = self.joined_at.is_none() && system.is_sewing();
+        let meets = system.get::<SelfContact>().is_some() && !(sewing && self.sews_through);
         let tree = meets.then(|| self.plan.tree(k, sheet, layout, sewing));
         let start = Instant::now();
         let meshes = self.plan.pieces.len();
@@ -230,7 +260,8 @@ impl<'a> Solve<'a> {
         let late = || self.clock.elapsed() > self.plan.settings.budget || self.plan.stopper.is_up();
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             let seconds = start.elapsed().as_secs_f64();
-            let gap = if sewing { widest_open_seam(&system.seam_forces, x) } else { 0.0 };
+            let seams = system.get::<SeamForces>().filter(|_| sewing);
+            let gap = seams.map_or(0.0, |s| s.widest(x));
             report = LevelReport { gap, outcome: *outcome, seconds, ..report };
             stop = self.fallen(k, system, sheet, x, &piece);
             if stop.is_none() && progress(&report).is_break() {
@@ -245,36 +276,34 @@ impl<'a> Solve<'a> {
         };
         match relax(system, layout, tree, x, options, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
-            Err(Halt::NotPositive(error)) => return Err(self.unsolvable(k, error.node, x)),
+            Err(Halt::NotPositive(error)) => return Err(self.unsolvable(mesh, error.node, x)),
             Err(Halt::Stopped) => is_late = true,
         }
         match stop {
             Some(error) => Err(error),
             None if self.plan.stopper.is_up() => Err(StaticsError::Stopped),
-            None if is_late => Err(self.timeout(k, x)),
+            None if is_late => Err(self.timeout(mesh, x)),
             None => Ok(report),
         }
     }
 
-    /// The error of a step of level `k` from `x` that has no solution near `node`.
-    fn unsolvable(&self, k: usize, node: u32, x: &[Vec3]) -> StaticsError {
-        let pieces = &self.plan.pieces[k];
-        let is_open = pieces.nodes != x.len();
-        let of_node = || pieces.node.iter().position(|n| *n == node).unwrap_or(0);
-        let vertex = if is_open { node as usize } else { of_node() };
-        unsolvable(self.plan.scene, self.plan.finest_of(k, vertex as u32) as usize, &x[node as usize])
+    /// The error of a step of a level from `x` that has no solution near `node`.
+    fn unsolvable(&self, mesh: LevelMesh<'_>, node: u32, x: &[Vec3]) -> StaticsError {
+        let of_node = || self.plan.pieces[mesh.k].node.iter().position(|n| *n == node).unwrap_or(0);
+        let vertex = if mesh.is_open { node as usize } else { of_node() };
+        unsolvable(self.plan.scene, self.plan.finest_of(mesh.k, vertex as u32) as usize, &x[node as usize])
     }
 
-    /// The error of a level `k` that is out of time with its nodes at `x`.
-    fn timeout(&self, k: usize, x: &[Vec3]) -> StaticsError {
+    /// The error of a level that is out of time with its nodes at `x`.
+    fn timeout(&self, mesh: LevelMesh<'_>, x: &[Vec3]) -> StaticsError {
         let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.plan.pieces.len());
-        StaticsError::Timeout { seconds, level: levels - k, levels, positions: self.prolonged(k, x) }
+        let vertices = if mesh.is_open { x.to_vec() } else { self.plan.pieces[mesh.k].spread(x) };
+        let positions = self.prolonged(mesh.k, vertices);
+        StaticsError::Timeout { seconds, level: levels - mesh.k, levels, positions }
     }
 
-    /// The positions of the nodes of level `k`, sewn or open, prolonged to the finest vertices.
-    pub(crate) fn prolonged(&self, k: usize, x: &[Vec3]) -> Vec<Vec3> {
-        let vertices =
-            if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };
+    /// The positions of the vertices of level `k`, prolonged to the finest vertices.
+    pub(crate) fn prolonged(&self, k: usize, vertices: Vec<Vec3>) -> Vec<Vec3> {
         self.plan.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }
 
@@ -284,9 +313,9 @@ impl<'a> Solve<'a> {
         if gap <= self.plan.settings.join_gap {
             return Ok(());
         }
-        let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
+        let positions = self.plan.pieces[0].spread(x);
+        let seam = self.widest_seam(0, &positions);
         let force = KEPT_FORCE * strongest(&self.plan.cloths);
-        let positions = self.prolonged(0, x);
         Err(StaticsError::SeamNotClosed { seam, gap, force, reversed: vec![], positions })
     }
 

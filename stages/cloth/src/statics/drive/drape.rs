@@ -7,6 +7,7 @@
 
 use crate::statics::drive::coarse_to_fine::{Draped, LevelMesh, Solve};
 use crate::statics::drive::held::hold_as;
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::levels::bending_continuation::stages;
 use crate::statics::levels::mesh_level::Level;
 use crate::statics::newton::to_rest::{NewtonOptions, Proof};
@@ -203,7 +204,7 @@ impl<'a> Solve<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<bool, StaticsError> {
         match self.settle(k, level, stiff, options, progress) {
-            Ok(()) if level.friction.is_some() => Ok(level.moved() < MOST_FALL * level.size()),
+            Ok(()) if level.is_frictionless => Ok(level.moved() < MOST_FALL * level.size()),
             Ok(()) => Ok(true),
             Err(StaticsError::FallsPast(fallen)) if !fallen.is_certain => {
                 self.last_fall = Some(StaticsError::FallsPast(fallen));
@@ -223,14 +224,15 @@ impl<'a> Solve<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
         level.system.elastic.scale_bending(stiff);
-        let offsets =
-            level.system.body_contact.as_mut().filter(|_| self.plan.settings.bending_continuation).map(|c| {
-                c.grows_offsets = true;
-                c.offsets.clone()
-            });
+        let contact = level.system.get_mut::<BodyContact>();
+        let offsets = contact.filter(|_| self.plan.settings.bending_continuation).map(|c| {
+            c.grows_offsets = true;
+            c.offsets.clone()
+        });
         let Level { system, sheet, layout, x, .. } = &mut *level;
-        let run = self.relax_uncrossed(LevelMesh { k, sheet, layout }, system, x, &options, progress);
-        if let (Some(contact), Some(offsets)) = (&mut level.system.body_contact, offsets) {
+        let mesh = LevelMesh { k, is_open: false, sheet, layout };
+        let run = self.relax_uncrossed(mesh, system, x, &options, progress);
+        if let (Some(contact), Some(offsets)) = (level.system.get_mut::<BodyContact>(), offsets) {
             (contact.grows_offsets, contact.offsets) = (false, offsets);
         }
         level.system.elastic.scale_bending(1.0 / stiff);
@@ -250,7 +252,7 @@ impl<'a> Solve<'a> {
         let options =
             NewtonOptions { first: FIRST_ON_FINEST, steps, speed, proof, one_by_one, ..self.options() };
         let Level { system, sheet, layout, x, .. } = level;
-        let mesh = LevelMesh { k: 0, sheet, layout };
+        let mesh = LevelMesh { k: 0, is_open: false, sheet, layout };
         let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
         self.reports.push(report);
         self.restore_clearance(mesh, system, x, &options, progress)

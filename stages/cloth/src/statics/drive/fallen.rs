@@ -32,7 +32,7 @@ impl Solve<'_> {
         piece: &[u32],
     ) -> Option<StaticsError> {
         let body =
-            self.plan.body_box.filter(|_| system.gravity != Vec3::zeros() && piece.len() == x.len())?;
+            self.plan.body_box.filter(|_| system.loads.gravity != Vec3::zeros() && piece.len() == x.len())?;
         let past = body.past(x, piece, &system.pinned);
         let is_past = |n: usize| past.get(piece[n] as usize).copied().unwrap_or(false);
         if past.is_empty() {

@@ -16,6 +16,7 @@
 
 use crate::statics::drive::coarse_to_fine::Solve;
 use crate::statics::drive::drape::Continued;
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::levels::bending_continuation::stages;
 use crate::statics::levels::mesh_level::{Level, apart};
 use crate::statics::newton::to_rest::NewtonOptions;
@@ -50,7 +51,7 @@ impl<'a> Solve<'a> {
         end: f64,
         progress: &mut Progress<'_>,
     ) -> Result<Continued, StaticsError> {
-        let is_frictionless = level.system.is_frictionless_on_body();
+        let is_frictionless = level.system.get::<BodyContact>().is_none_or(BodyContact::is_frictionless);
         for stiff in std::iter::once(first).chain(stages(first, end)).take(TRIES) {
             let (mut free, mut held) = (level.clone(), level.clone());
             self.last_fall = None;
@@ -90,9 +91,9 @@ impl<'a> Solve<'a> {
     ) -> Result<bool, StaticsError> {
         level.disable_friction();
         level.turn_back();
-        level.system.push = level.twist(TORQUE);
+        level.system.loads.push = level.twist(TORQUE);
         let stays = self.stiff_equilibrium(k, level, stiff, progress);
-        level.system.push.clear();
+        level.system.loads.push.clear();
         Ok(stays? && self.stiff_equilibrium(k, level, stiff, progress)?)
     }
 

@@ -8,6 +8,7 @@
 use crate::mesh::Sheet;
 use crate::statics::drive::coarse_to_fine::{LevelMesh, Solve};
 use crate::statics::drive::contour::uncross;
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::newton::patience::{Patience, Shrinking};
 use crate::statics::newton::to_rest::NewtonOptions;
@@ -74,12 +75,12 @@ impl Solve<'_> {
 
 /// How many nodes are intersecting.
 fn intersecting(system: &System<'_>) -> usize {
-    system.self_contact.as_ref().map_or(0, |c| c.intersecting.iter().filter(|t| **t).count())
+    system.get::<SelfContact>().map_or(0, |c| c.intersecting.iter().filter(|t| **t).count())
 }
 
 /// The intersecting nodes and so many rings of nodes around them, without pinned nodes.
 fn around(system: &System<'_>, sheet: &Sheet, rings: usize) -> Vec<bool> {
-    let mut chosen = system.self_contact.as_ref().map_or_else(Vec::new, |c| c.intersecting.clone());
+    let mut chosen = system.get::<SelfContact>().map_or_else(Vec::new, |c| c.intersecting.clone());
     for _ in 0..rings {
         let inner = chosen.clone();
         for [a, b] in sheet.edges().iter().map(|e| e.vertices.map(|v| v as usize)) {

@@ -12,7 +12,9 @@ use crate::scene::Scene;
 use crate::statics::drive::held::hold_as;
 use crate::statics::drive::solve::{Equilibrium, LevelReport, Progress, StaticEquilibrium, StaticsError};
 use crate::statics::factor::multifrontal::Halt;
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::clearance::clearance;
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::assemble::{Collider, assemble, cloths, kept_seam_forces};
 use crate::statics::levels::pieces::Pieces;
@@ -61,7 +63,7 @@ impl<'a> Live<'a> {
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene))?;
         let mut system = assemble(&scene, collider, &pieces, &sheet, false, settings.models)?;
-        system.seam_forces = kept_seam_forces(&scene, &pieces, settings.join_gap);
+        system.set_seam_forces(kept_seam_forces(&scene, &pieces, settings.join_gap));
         let even = vec![1.0; scene.rest.len()];
         let x = pieces.sew(&state.positions, &even);
         hold_as(&state.held(), &mut system, &pieces, &x);
@@ -113,7 +115,7 @@ impl<'a> Live<'a> {
     /// [`StaticsError`], where the scene is at fault.
     pub fn set_collider(&mut self, collider: Option<Collider<'a>>) -> Result<(), StaticsError> {
         self.collider = collider;
-        self.system.distance_cache.clear();
+        self.system.get_mut::<BodyContact>().into_iter().for_each(|c| c.distance_cache.clear());
         self.renew()
     }
 
@@ -134,24 +136,8 @@ impl<'a> Live<'a> {
         self.sheet = self.pieces.sewn_sheet(&cloths(&self.scene))?;
         let mut new =
             assemble(&self.scene, self.collider, &self.pieces, &self.sheet, false, self.settings.models)?;
-        new.seam_forces = kept_seam_forces(&self.scene, &self.pieces, self.settings.join_gap);
-        let old = &mut self.system;
-        new.elastic.hold(&self.x, false);
-        new.elastic.hold_at(old.elastic.held());
-        std::mem::swap(&mut new.anchors, &mut old.anchors);
-        std::mem::swap(&mut new.loads, &mut old.loads);
-        std::mem::swap(&mut new.distance_cache, &mut old.distance_cache);
-        if let (Some(new), Some(old)) = (&mut new.body_contact, &mut old.body_contact) {
-            new.offsets.iter_mut().zip(&old.offsets).for_each(|(new, old)| *new = new.max(*old));
-        }
-        if let (Some(new), Some(old)) = (&mut new.self_contact, &mut old.self_contact) {
-            std::mem::swap(&mut new.pairs, &mut old.pairs);
-            std::mem::swap(&mut new.friction_contacts, &mut old.friction_contacts);
-        }
-        if let (Some(new), Some(old)) = (&mut new.ridges, &old.ridges) {
-            new.continue_from(old);
-        }
-        new.targets = old.targets.iter().filter(|(n, _)| new.pinned[*n as usize]).copied().collect();
+        new.set_seam_forces(kept_seam_forces(&self.scene, &self.pieces, self.settings.join_gap));
+        new.continue_from(&self.system, &self.x);
         self.system = new;
         self.newton.renew(&mut self.system);
         Ok(())
@@ -234,8 +220,7 @@ impl<'a> Live<'a> {
             folds: self.system.elastic.held().to_vec(),
             friction_contacts: self
                 .system
-                .self_contact
-                .as_ref()
+                .get::<SelfContact>()
                 .map_or_else(Vec::new, |c| c.friction_contacts.clone()),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),

@@ -8,6 +8,8 @@ use crate::contact::past::BodyBox;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
+use crate::statics::forces::body_contact::BodyContact;
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::levels::assemble::{Collider, assemble, cloths, gravity, kept_seam_forces};
 use crate::statics::levels::bending_continuation::{BendingContinuation, EDGES, EDGES_THROUGH};
 use crate::statics::levels::coarsen::{Coarser, coarsen};
@@ -143,17 +145,17 @@ impl<'a> Plan<'a> {
         let sheet = pieces.sewn_sheet(&self.cloths)?;
         let layout = pieces.sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
         let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.settings.models)?;
-        system.seam_forces = kept_seam_forces(self.scene, pieces, self.settings.join_gap);
-        system.self_contact.iter_mut().for_each(|c| c.stacked = self.is_stack);
-        if let (true, true, Some(contact)) =
-            (self.settings.bending_continuation, k > 0, &mut system.body_contact)
-        {
-            // Offsets that grow in an intermediate state would move the cloth, and so change which
-            // folds form.
-            contact.edges.clear();
+        system.set_seam_forces(kept_seam_forces(self.scene, pieces, self.settings.join_gap));
+        system.get_mut::<SelfContact>().into_iter().for_each(|c| c.stacked = self.is_stack);
+        if let Some(contact) = system.get_mut::<BodyContact>() {
+            contact.stiffens_inside = self.settings.sew_through;
+            if self.settings.bending_continuation && k > 0 {
+                // Offsets that grow in an intermediate state would move the cloth, and so change
+                // which folds form.
+                contact.edges.clear();
+            }
         }
-        system.body_contact.iter_mut().for_each(|c| c.stiffens_inside = self.settings.sew_through);
-        Ok(Level { system, sheet, layout, x: Vec::new(), friction: None })
+        Ok(Level { system, sheet, layout, x: Vec::new(), is_frictionless: false })
     }
 
     /// The tree of level `k`, while it is sewn or after. The two sides of a seam are no obstacle to

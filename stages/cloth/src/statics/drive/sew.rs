@@ -11,7 +11,9 @@ use crate::mesh::Sheet;
 use crate::scene::Seam;
 use crate::statics::drive::coarse_to_fine::{LevelMesh, Solve};
 use crate::statics::drive::contour::uncross;
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::height_springs::HeightSprings;
+use crate::statics::forces::ridges::Ridges;
 use crate::statics::forces::seam_force::{SeamForce, widest};
 use crate::statics::forces::system::System;
 use crate::statics::levels::assemble::{Collider, assemble, gravity, spacing, strongest};
@@ -131,7 +133,7 @@ impl Solve<'_> {
         if gap > self.most_gap() {
             let seam = self.widest_seam(self.plan.coarsest_level(), x);
             let reversed = probably_reversed(self.plan.scene, &self.plan.starts[0]);
-            let positions = self.prolonged(self.plan.coarsest_level(), x);
+            let positions = self.prolonged(self.plan.coarsest_level(), x.to_vec());
             return Err(StaticsError::SeamNotClosed { seam, gap, force, reversed, positions });
         }
         Ok(())
@@ -208,9 +210,9 @@ impl Solve<'_> {
             }
             before = gap;
             let mut system = self.open(sheet, stiff)?;
-            system.seam_forces = self.seam_forces(pairs, pull * spacing);
+            system.set_seam_forces(self.seam_forces(pairs, pull * spacing));
             if !self.plan.around.is_empty() {
-                system.height_springs = self.height_springs(
+                system.loads.height_springs = self.height_springs(
                     sheet,
                     &self.plan.starts[coarsest],
                     1.0,
@@ -232,7 +234,7 @@ impl Solve<'_> {
                 let gap = widest(x, pairs);
                 gap < self.plan.settings.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
             };
-            let mesh = LevelMesh { k: coarsest, sheet, layout: &self.plan.starts[coarsest] };
+            let mesh = LevelMesh { k: coarsest, is_open: true, sheet, layout: &self.plan.starts[coarsest] };
             let report = self.relax(mesh, &mut system, x, &options, &closed, progress)?;
             self.reports.push(report);
             pull *= GROWTH;
@@ -269,10 +271,12 @@ impl Solve<'_> {
         let mut x = std::mem::take(&mut self.x);
         let mut system =
             assemble(self.plan.scene, Some(solid), pieces, &sheet, false, self.plan.settings.models)?;
-        system.gravity = Vec3::zeros();
-        system.ridges = None;
-        system.body_contact.iter_mut().for_each(|s| (s.lets_through, s.depth) = (true, DEEPEST));
-        system.height_springs = self.height_springs(&sheet, &start, stiffness, panel);
+        system.remove::<Ridges>();
+        if let Some(contact) = system.get_mut::<BodyContact>() {
+            (contact.lets_through, contact.depth) = (true, DEEPEST);
+        }
+        system.loads.gravity = Vec3::zeros();
+        system.loads.height_springs = self.height_springs(&sheet, &start, stiffness, panel);
         let options = NewtonOptions {
             first: FIRST,
             longest: LONGEST_SLIDE,
@@ -283,7 +287,7 @@ impl Solve<'_> {
             asleep: false,
             ..self.options()
         };
-        let mesh = LevelMesh { k: coarsest, sheet: &sheet, layout: &start };
+        let mesh = LevelMesh { k: coarsest, is_open: false, sheet: &sheet, layout: &start };
         let report = self.relax(mesh, &mut system, &mut x, &options, &|_, x| done(x), progress)?;
         self.reports.push(report);
         self.x = x;
@@ -334,7 +338,7 @@ impl Solve<'_> {
             ..self.options()
         };
         let layout = x.to_vec();
-        let mesh = LevelMesh { k: self.plan.coarsest_level(), sheet, layout: &layout };
+        let mesh = LevelMesh { k: self.plan.coarsest_level(), is_open: true, sheet, layout: &layout };
         let system = &mut self.open(sheet, continuation.first())?;
         let report = self.relax(mesh, system, x, &options, &|_, _| false, progress)?;
         self.reports.push(report);
@@ -348,7 +352,7 @@ impl Solve<'_> {
             assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.settings.models)?;
         if self.plan.settings.bending_continuation {
             system.elastic.scale_bending(stiff);
-            system.body_contact.iter_mut().for_each(|s| s.grows_offsets = true);
+            system.get_mut::<BodyContact>().into_iter().for_each(|c| c.grows_offsets = true);
         }
         Ok(system)
     }

@@ -14,7 +14,7 @@ use crate::statics::forces::penetration::pierced;
 use crate::statics::newton::sequential_start::stack_size;
 use crate::statics::report::start::moved_out;
 use crate::stopper::Stopper;
-use nalgebra::Vector3;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Seams that are open by less than this differ by chance, m.
@@ -29,8 +29,6 @@ pub struct Trial {
     pub crossings: usize,
     /// Triangles through which the body passes.
     pub pierced: usize,
-    /// Root mean square strain of the edges.
-    pub strain: f64,
 }
 
 impl Trial {
@@ -40,17 +38,14 @@ impl Trial {
         self.gap == 0.0 && self.crossings == 0 && self.pierced == 0
     }
 
-    /// Whether it is better than `other`: by open seams, then by what crosses, then by strain.
+    /// Whether it is clearly better than `other`: its seams close where those of the other stay
+    /// open, or nothing crosses where something does. How much crosses is chance on a coarse mesh.
     #[must_use]
     pub fn is_better(&self, other: &Self) -> bool {
-        let crossing = |t: &Self| t.crossings + t.pierced;
         if (self.gap - other.gap).abs() > SAME_GAP || (self.gap == 0.0) != (other.gap == 0.0) {
             return self.gap < other.gap;
         }
-        match crossing(self).cmp(&crossing(other)) {
-            std::cmp::Ordering::Equal => self.strain < other.strain,
-            order => order.is_lt(),
-        }
+        self.is_clean() && !other.is_clean()
     }
 }
 
@@ -73,35 +68,16 @@ impl StaticEquilibrium {
         let coarsest = self.first_coarsest(stack_size(scene));
         let plan = Plan::new(self, coarsest, scene, collider, around, stopper, &start)?;
         let mut solve = Solve::new(&plan, Instant::now());
-        let gap = match solve.sew(&mut |_| std::ops::ControlFlow::Continue(())) {
-            Ok(()) => 0.0,
-            Err(StaticsError::SeamNotClosed { gap, positions, .. }) => {
-                let level = plan.coarsest_level();
-                solve.x = (0..plan.pieces[level].rest.len() as u32)
-                    .map(|v| positions[plan.finest_of(level, v) as usize])
-                    .collect();
-                return Ok(Trial { gap, crossings: 0, pierced: 0, strain: solve.strain(&solve.x) });
+        match solve.sew(&mut |_| ControlFlow::Continue(())) {
+            Ok(()) => {}
+            Err(StaticsError::SeamNotClosed { gap, .. }) => {
+                return Ok(Trial { gap, crossings: 0, pierced: 0 });
             }
             Err(error) => return Err(error),
-        };
+        }
         let level = plan.coarsest_level();
         let sheet = plan.pieces[level].sewn_sheet(&plan.cloths)?;
         let pierced = collider.map_or(0, |c| pierced(&sheet, c.surface, &solve.x));
-        let strain = solve.strain(&plan.pieces[level].spread(&solve.x));
-        Ok(Trial { gap, crossings: solve.crossings, pierced, strain })
-    }
-}
-
-impl Solve<'_> {
-    /// Root mean square strain of the edges of the coarsest level, whose vertices are at `x`.
-    fn strain(&self, x: &[Vector3<f64>]) -> f64 {
-        let pieces = &self.plan.pieces[self.plan.coarsest_level()];
-        let sides = pieces.triangles.iter().flat_map(|t| (0..3).map(|k| [t[k], t[(k + 1) % 3]]));
-        let (mut sum, mut count) = (0.0, 0);
-        for [a, b] in sides.map(|side| side.map(|v| v as usize)) {
-            let strain = (x[a] - x[b]).norm() / (pieces.rest[a] - pieces.rest[b]).norm() - 1.0;
-            (sum, count) = (sum + strain * strain, count + 1);
-        }
-        (sum / f64::from(count.max(1))).sqrt()
+        Ok(Trial { gap: 0.0, crossings: solve.crossings, pierced })
     }
 }

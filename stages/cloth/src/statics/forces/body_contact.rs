@@ -1,41 +1,46 @@
-//! Contact of cloth with the body: the distance at which contact begins at each node, how near a
-//! move may lead, and a cache of distances.
+//! Contact of cloth with the body, and its friction.
 //!
-//! Method: a quadratic penalty within a thickness of the surface, so that vertices rest outside it.
-//! Cost: one distance query per node that may be near. Limits: see `clearance` for what lies
-//! between vertices, and `ridges` for sharp features.
+//! Method: a quadratic penalty within a thickness of the surface, so that vertices rest outside it,
+//! and regularised Coulomb friction from an anchor of each node (see `contact/coulomb`). Anchors
+//! move along while the cloth moves fast. Normals and limits of friction are those of the start of
+//! the step. Cost: one distance query per node that may be near. Limits: see `clearance` for what
+//! lies between vertices, and `ridges` for sharp features.
 
-use crate::contact::collision_surface::CollisionSurface;
-use nalgebra::Vector3;
-use toile_geometry::signed_distance::Nearest;
+use crate::contact::coulomb::{Coulomb, FrictionMemory};
+use crate::energy::Subset;
+use crate::linear::Pattern;
+use crate::statics::forces::distance_query::{ContactQuery, DistanceCache};
+use crate::statics::forces::force::{Force, Place, of_type};
+use nalgebra::{Matrix3, Vector3};
+
+mod guard;
+mod offsets;
+mod query;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the offset that a move leaves between a node and the body.
-const GUARD: f64 = 0.5;
+/// Distance, as a share of the offset, within which a node that has just come near carries its
+/// weight.
+const FIRST: f64 = 1.1;
 
-/// Share of the offset below which a node that the guard stops counts as overloaded.
-const OVERLOADED: f64 = 0.6;
-
-/// Factor by which the contact of an overloaded node becomes stiffer.
-const STIFFER: f64 = 4.0;
-
-/// Greatest stiffness that it reaches, N/m: in half a millimetre it carries 50 kg.
-const STIFFEST: f64 = 1e6;
-
-/// Allowance for rounding in bounds on a distance, m.
-pub(crate) const NUDGE: f64 = 1e-9;
-
-/// Distance, as a share of the offset, up to which a node in contact keeps its anchor.
-pub(crate) const NEAR: f64 = 1.5;
+/// A node in contact with the body.
+#[derive(Debug, Clone, Copy)]
+pub struct BodyTouch {
+    /// The node.
+    pub node: u32,
+    /// Outward normal of the body at the contact.
+    pub normal: Vec3,
+    /// Contact force, N.
+    pub force: f64,
+}
 
 /// Contact of the nodes with the body.
 #[derive(Debug, Clone)]
-pub struct BodyContact<'a> {
-    /// The body.
-    pub body: &'a dyn CollisionSurface,
+pub struct BodyContact {
     /// Coefficient of friction, per node.
     pub friction: Vec<f64>,
+    /// The coefficients while friction is disabled.
+    pub disabled_friction: Vec<f64>,
     /// Distance at which contact begins, per node, m.
     pub offsets: Vec<f64>,
     /// The least of them, m.
@@ -45,6 +50,8 @@ pub struct BodyContact<'a> {
     /// Edges of the sheet and their rest lengths: an edge between two nodes on a curved body dips
     /// below them.
     pub edges: Vec<([u32; 2], f64)>,
+    /// Edges that lie over an edge of the body, sorted: `ridges` keeps them off it.
+    pub bridges: Vec<[u32; 2]>,
     /// Whether edges must stay outside the body, too; otherwise they may dip into it as far as
     /// keeps the girth right.
     pub keeps_edges_out: bool,
@@ -59,97 +66,163 @@ pub struct BodyContact<'a> {
     pub stiffness: Vec<f64>,
     /// Nodes that pressed harder than their contact can carry in the last step.
     pub overloaded: Vec<u32>,
+    /// Nodes in contact at the start of the step.
+    pub touches: Vec<BodyTouch>,
+    /// The friction of each node in contact.
+    pub memory: Vec<Option<FrictionMemory>>,
+    /// Tangential displacement with which the friction of each node begins at its first contact, as
+    /// the coarser level found it, m.
+    pub slides: Vec<Vec3>,
+    /// The last known distance of each node from the body; empty before the first step.
+    pub distance_cache: Vec<DistanceCache>,
     #[cfg(toile_without = "body")]
     pub(crate) never: std::convert::Infallible,
 }
 
-/// The distance of a node from the body at its last query: it bounds the distance now.
-#[derive(Debug, Clone, Copy)]
-pub struct DistanceCache {
-    /// Where the node was.
-    pub at: Vec3,
-    /// Its distance, negative inside, or a bound below it, m.
-    pub distance: f64,
-    /// Whether the distance is exact.
-    pub exact: bool,
-}
-
-/// The result of a contact query of one node: its distance, and the nearest place if it is near.
-pub type ContactQuery = (DistanceCache, Option<Nearest>);
-
-impl BodyContact<'_> {
-    /// How near the body a move may lead node `i`, m.
-    pub(crate) fn guard(&self, i: usize) -> f64 {
-        GUARD * if self.grows_offsets { self.offset } else { self.offsets[i] }
+impl BodyContact {
+    /// The tangential displacement of each node from its anchor at `x`, m.
+    pub(crate) fn displacements(&self, x: &[Vec3]) -> Vec<Vec3> {
+        let mut slides = vec![Vec3::zeros(); x.len()];
+        self.rubs().for_each(|(i, r)| slides[i] = r.displacement(&x[i]));
+        slides
     }
 
-    /// Increases the offset of node `i` if it is overloaded. A stiff sheet presses harder on a few
-    /// nodes than their contact can carry. Without this the guard would stop them at every step,
-    /// and nothing would come to rest.
-    pub(crate) fn grow(&mut self, i: usize, distance: f64) {
-        if distance < OVERLOADED * self.offset {
-            self.offsets[i] += GUARD * self.offset;
-        }
+    /// Whether there is no friction.
+    pub(crate) fn is_frictionless(&self) -> bool {
+        self.friction.iter().all(|f| *f == 0.0)
     }
 
-    /// Marks a node that the guard has stopped as overloaded if it lies too near.
-    pub(crate) fn mark_overloaded(&mut self, i: usize, distance: f64) {
-        if distance < OVERLOADED * self.offsets[i] {
-            self.overloaded.push(i as u32);
-        }
+    /// The nodes with friction, and that friction.
+    fn rubs(&self) -> impl Iterator<Item = (usize, Coulomb)> + '_ {
+        self.touches.iter().filter_map(move |t| {
+            let node = t.node as usize;
+            let memory = self.memory[node].filter(|_| self.friction[node] > 0.0)?;
+            Some((node, memory.coulomb(t.normal, self.friction[node])))
+        })
     }
 
-    /// Makes contact stiffer at overloaded nodes. Their share of the sheet is too small for the
-    /// load there; if the guard alone held them they would never come to rest.
-    pub(crate) fn stiffen_overloaded(&mut self) {
-        self.overloaded.sort_unstable();
-        self.overloaded.dedup();
-        for i in self.overloaded.drain(..) {
-            let stiffness = &mut self.stiffness[i as usize];
-            *stiffness = (*stiffness * STIFFER).min(stiffness.max(STIFFEST));
-        }
+    fn friction_energy(&self, x: &[Vec3]) -> f64 {
+        self.rubs().map(|(i, r)| r.value(&x[i])).sum()
     }
 
-    /// Increases the offsets of nodes in contact where the edges between them would dip into a
-    /// convex body. Edges that `is_held` are left out: `ridges` keeps them off the body.
-    pub(crate) fn allow_for_sag(
-        &mut self,
-        near: &[Option<Nearest>],
-        x: &[Vec3],
-        is_held: impl Fn([u32; 2]) -> bool,
-    ) {
-        let mut sags = vec![0.0f64; self.offsets.len()];
-        for &([i, j], length) in &self.edges {
-            let (i, j) = (i as usize, j as usize);
-            if let (Some(a), Some(b)) = (&near[i], &near[j]) {
-                let turn = b.normal - a.normal;
-                if turn.dot(&(x[j] - x[i])) > 0.0 && !is_held([i as u32, j as u32]) {
-                    let sag = length * turn.norm() / 8.0;
-                    (sags[i], sags[j]) = (sags[i].max(sag), sags[j].max(sag));
-                }
+    /// Finds the nodes in contact, their forces and their friction.
+    fn find_touches(&mut self, at: &Place<'_>) {
+        self.touches.clear();
+        for (i, (_, near)) in at.on_body.iter().enumerate() {
+            let before = self.memory[i].take();
+            let Some(n) = near else { continue };
+            if self.stiffens_inside && n.distance < 0.0 {
+                self.overloaded.push(i as u32);
+            }
+            let force = self.stiffness[i] * (self.offsets[i] - n.distance).max(0.0);
+            // A node that has just come into contact will carry at least its weight.
+            let weight = -at.loads.masses[i] * at.loads.gravity.dot(&n.normal);
+            let first = if n.distance < FIRST * self.offsets[i] { force.max(weight) } else { force };
+            let load = before.map_or(first, |m| m.mean_load(force));
+            if force > 0.0 || load > 0.0 {
+                let start = || at.x[i] - std::mem::take(&mut self.slides[i]);
+                let anchor = before.map_or_else(start, |m| m.anchor);
+                self.memory[i] = Some(FrictionMemory { anchor, load });
+                self.touches.push(BodyTouch { node: i as u32, normal: n.normal, force });
             }
         }
-        // Offsets only grow within a level, or contacts would come and go with them.
-        for (i, sag) in sags.into_iter().enumerate() {
-            // A polygon around a circle has its length when its corners stand a third of the sag
-            // outside.
-            let least =
-                if self.keeps_edges_out { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
-            self.offsets[i] = self.offsets[i].max(self.offset + least);
+    }
+}
+
+impl Force for BodyContact {
+    fn boxed(&self) -> Box<dyn Force> {
+        Box::new(self.clone())
+    }
+
+    fn begin_step(&mut self, at: &Place<'_>) {
+        self.distance_cache.clear();
+        self.distance_cache.extend(at.on_body.iter().map(|(cached, _)| *cached));
+        self.stiffen_overloaded();
+        if !self.lets_through {
+            self.allow_for_sag(at.on_body, at.x);
+        }
+        self.find_touches(at);
+    }
+
+    fn add_contact_value(&self, at: &Place<'_>, sum: &mut f64) {
+        let penalty = |((n, o), k): ((&ContactQuery, &f64), &f64)| {
+            n.1.as_ref().map_or(0.0, |n| 0.5 * k * (o - n.distance).max(0.0).powi(2))
+        };
+        *sum += at.on_body.iter().zip(&self.offsets).zip(&self.stiffness).map(penalty).sum::<f64>();
+        *sum += self.friction_energy(at.x);
+    }
+
+    fn add_contact_value_at_start(&self, x: &[Vec3], sum: &mut f64) {
+        let penalty = |t: &BodyTouch| 0.5 * t.force * t.force / self.stiffness[t.node as usize];
+        *sum += self.touches.iter().filter(|t| t.force > 0.0).map(penalty).sum::<f64>();
+        *sum += self.friction_energy(x);
+    }
+
+    fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+        self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
+        self.rubs().for_each(|(i, r)| g[i] += r.gradient(&x[i]));
+    }
+
+    fn add_matrix(&self, x: &[Vec3], _: &Pattern, values: &mut [Matrix3<f64>]) {
+        for t in self.touches.iter().filter(|t| t.force > 0.0) {
+            values[t.node as usize] += t.normal * t.normal.transpose() * self.stiffness[t.node as usize];
+        }
+        self.rubs().for_each(|(i, r)| values[i] += r.matrix(&x[i]));
+    }
+
+    fn end_step(&mut self, x: &[Vec3]) {
+        for t in &self.touches {
+            let node = t.node as usize;
+            if let Some(memory) = self.memory[node].as_mut().filter(|_| self.friction[node] > 0.0) {
+                memory.anchor = memory.coulomb(t.normal, self.friction[node]).dragged(&x[node]);
+            }
         }
     }
 
-    /// The radius within which to query the body around `p`; `None` where the `cached` distance
-    /// shows that it is far.
-    pub(crate) fn reach(&self, p: &Vec3, offset: f64, cached: Option<&DistanceCache>) -> Option<f64> {
-        let within = offset + self.depth;
-        let Some(cached) = cached else { return Some(within) };
-        let moved = (p - cached.at).norm();
-        match cached.distance - moved > NEAR * offset {
-            true => None,
-            false if cached.exact => Some(within.min(cached.distance.abs() + moved + NUDGE)),
-            false => Some(within),
+    fn swap_friction(&mut self) {
+        std::mem::swap(&mut self.friction, &mut self.disabled_friction);
+        self.memory.fill(None);
+    }
+
+    fn scale_contact(&mut self, factor: f64) {
+        self.stiffness.iter_mut().for_each(|s| *s *= factor);
+        self.memory.iter_mut().flatten().for_each(|m| m.load *= factor);
+    }
+
+    fn restrict(&self, cut: &Subset) -> Box<dyn Force> {
+        let edges = self.edges.iter().filter(|(e, _)| cut.knows(e));
+        Box::new(Self {
+            friction: cut.pick(&self.friction),
+            disabled_friction: cut.pick(&self.disabled_friction),
+            offsets: cut.pick(&self.offsets),
+            edges: edges.map(|(e, l)| (cut.renumbered(*e), *l)).collect(),
+            bridges: Vec::new(),
+            stiffness: cut.pick(&self.stiffness),
+            overloaded: Vec::new(),
+            touches: Vec::new(),
+            memory: cut.pick(&self.memory),
+            slides: cut.pick(&self.slides),
+            distance_cache: cut.pick(&self.distance_cache),
+            ..*self
+        })
+    }
+
+    fn merge(&mut self, cut: &Subset, part: &dyn Force) {
+        let Some(part) = of_type::<Self>(part) else { return };
+        cut.put(&part.memory, &mut self.memory);
+        cut.put(&part.slides, &mut self.slides);
+        if !self.distance_cache.is_empty() && !part.distance_cache.is_empty() {
+            cut.put(&part.distance_cache, &mut self.distance_cache);
         }
+        cut.put(&part.offsets, &mut self.offsets);
+        cut.put(&part.stiffness, &mut self.stiffness);
+    }
+
+    fn continue_from(&mut self, before: &dyn Force) {
+        let Some(before) = of_type::<Self>(before) else { return };
+        self.memory.clone_from(&before.memory);
+        self.distance_cache.clone_from(&before.distance_cache);
+        self.offsets.iter_mut().zip(&before.offsets).for_each(|(new, old)| *new = new.max(*old));
     }
 }
 

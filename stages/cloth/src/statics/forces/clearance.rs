@@ -29,6 +29,9 @@ const CHUNK: usize = 64;
 /// Crossings of a triangle with facets that are evaluated, with the middles between them, at most.
 const MOST_PLACES: usize = 12;
 
+/// Rounds in which nodes are moved outwards without regard to forces.
+const LIFTS: usize = 10;
+
 /// The least distance that lattice points must keep, m.
 pub const GAP: f64 = 2e-4;
 
@@ -40,10 +43,49 @@ pub(crate) const LEAST_RADIUS: f64 = 0.02;
 pub struct Clearance {
     /// What must be added to the offset of each node, m.
     pub lacks: Vec<f64>,
+    /// The direction out of the body where most of that is lacking; zero for nodes that lack
+    /// nothing.
+    pub outwards: Vec<Vec3>,
     /// The deepest point inside the body, m; 0 where none is.
     pub depth: f64,
     /// The number of triangles that dip in or cross facets.
     pub triangles: usize,
+}
+
+impl Clearance {
+    /// Asks for so much more of the nodes of a triangle, in the direction `outwards`.
+    fn ask(&mut self, nodes: &[u32; 3], lack: f64, outwards: Vec3) {
+        for v in nodes.map(|v| v as usize) {
+            if lack > self.lacks[v] {
+                (self.lacks[v], self.outwards[v]) = (lack, outwards);
+            }
+        }
+    }
+}
+
+/// Moves nodes outwards, without regard to forces, until no triangle dips in or crosses facets;
+/// none where that takes more than `farthest` (m) of a node, or a node is `pinned`.
+pub(crate) fn lifted(
+    sheet: &Sheet,
+    body: &dyn CollisionSurface,
+    x: &[Vec3],
+    pinned: &[bool],
+    farthest: f64,
+) -> Option<Vec<Vec3>> {
+    let mut lifted = x.to_vec();
+    for _ in 0..LIFTS {
+        let Clearance { lacks, outwards, triangles, .. } = clearance(sheet, body, &lifted);
+        if triangles == 0 {
+            return Some(lifted);
+        }
+        for (v, p) in lifted.iter_mut().enumerate().filter(|(v, _)| lacks[*v] > 0.0) {
+            *p += outwards[v] * lacks[v];
+            if pinned[v] || (*p - x[v]).norm() > farthest {
+                return None;
+            }
+        }
+    }
+    None
 }
 
 /// Evaluates the clearance of every triangle that may dip into the body.
@@ -64,16 +106,15 @@ pub fn clearance(sheet: &Sheet, body: &dyn CollisionSurface, x: &[Vec3]) -> Clea
         }
     }
     let found = body.nearest(&points, &vec![GAP + reach; points.len()]);
-    let mut out = Clearance { lacks: vec![0.0; x.len()], depth: 0.0, triangles: 0 };
+    let none = vec![Vec3::zeros(); x.len()];
+    let mut out = Clearance { lacks: vec![0.0; x.len()], outwards: none, depth: 0.0, triangles: 0 };
     let mut last = usize::MAX;
-    for (&t, distance) in of.iter().zip(found).filter_map(|(t, n)| Some((t, n?.distance))) {
-        if distance < GAP {
-            for &v in &sheet.triangles()[t] {
-                out.lacks[v as usize] = out.lacks[v as usize].max(GAP - distance);
-            }
+    for (&t, n) in of.iter().zip(found).filter_map(|(t, n)| Some((t, n?))) {
+        if n.distance < GAP {
+            out.ask(&sheet.triangles()[t], GAP - n.distance, n.normal);
         }
-        out.depth = out.depth.max(-distance);
-        if distance < 0.0 && t != last {
+        out.depth = out.depth.max(-n.distance);
+        if n.distance < 0.0 && t != last {
             (out.triangles, last) = (out.triangles + 1, t);
         }
     }
@@ -102,10 +143,9 @@ fn add_crossings(
         let middles: Vec<Vec3> =
             (0..places.len()).flat_map(|i| places[..=i].iter().map(move |p| (places[i] + p) * 0.5)).collect();
         let deep = body.nearest(&middles, &vec![f64::INFINITY; middles.len()]);
-        let depth = deep.into_iter().flatten().map(|n| -n.distance).fold(0.0, f64::max);
-        for &v in *t {
-            out.lacks[v as usize] = out.lacks[v as usize].max(GAP + depth);
-        }
+        let deepest = deep.into_iter().flatten().min_by(|a, b| a.distance.total_cmp(&b.distance));
+        let depth = deepest.map_or(0.0, |n| (-n.distance).max(0.0));
+        out.ask(t, GAP + depth, deepest.map_or_else(Vec3::zeros, |n| n.normal));
         (out.triangles, out.depth) = (out.triangles + 1, out.depth.max(depth));
     }
 }

@@ -8,9 +8,9 @@
 //!
 //! Cost: O(n log n) of the contacts.
 
+use crate::contact::coulomb::{Coulomb, FrictionMemory, mean_by_load};
 use crate::contact::friction::FrictionContact;
 use crate::statics::forces::contact::Contact;
-use crate::statics::forces::coulomb::{Coulomb, SLIP_TOLERANCE};
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -23,7 +23,7 @@ pub(crate) fn between(nodes: &[u32; 4], weights: &[f64; 4], x: &[Vec3]) -> Vec3 
 impl FrictionContact {
     /// The friction of this contact.
     pub(crate) fn coulomb(&self) -> Coulomb {
-        Coulomb { normal: self.normal, anchor: self.anchor, limit: self.friction * self.load }
+        self.memory.coulomb(self.normal, self.friction)
     }
 
     /// The vector between its features at `x`, m.
@@ -31,13 +31,10 @@ impl FrictionContact {
         between(&self.nodes, &self.weights, x)
     }
 
-    /// Moves the anchor along where the features have slid in this step. A contact that holds
-    /// beside sliding cloth goes on holding.
-    pub(crate) fn drag_anchors(&mut self, x: &[Vec3]) {
+    /// Moves the anchor along where the features have slid in this step.
+    pub(crate) fn drag_anchor(&mut self, x: &[Vec3]) {
         let (friction, at) = (self.coulomb(), self.at(x));
-        if (friction.displacement(&at) - self.slid).norm() > SLIP_TOLERANCE {
-            self.anchor = friction.dragged(&at);
-        }
+        self.memory.drag(&friction, &at, &self.slid);
     }
 
     /// How many nodes the first feature has.
@@ -101,39 +98,35 @@ impl<'a> FrictionHistory<'a> {
         friction: f64,
     ) -> FrictionContact {
         let (nodes, weights, normal) = (c.nodes, c.weights, c.normal);
-        let anchor = between(&nodes, &weights, x);
-        let mut new =
-            FrictionContact { nodes, weights, normal, anchor, slid: Vec3::zeros(), load: force, friction };
+        let memory = FrictionMemory { anchor: between(&nodes, &weights, x), load: force };
+        let mut new = FrictionContact { nodes, weights, normal, friction, memory, slid: Vec3::zeros() };
         new.slid = match self.friction_contacts.binary_search_by_key(&new.key(), FrictionContact::key) {
             Ok(k) => {
-                // Contact may alternate from step to step, so the limit of friction is a mean.
-                new.load = 0.5 * (self.friction_contacts[k].load + force);
+                new.memory.load = self.friction_contacts[k].memory.mean_load(force);
                 self.displacements[k]
             }
             Err(_) => self.taken_over(&new),
         };
-        new.anchor -= new.slid;
+        new.memory.anchor -= new.slid;
         new
     }
 
     /// The mean displacement of the contacts that share a node on either side, weighted by load.
     fn taken_over(&mut self, new: &FrictionContact) -> Vec3 {
         let slid = self.slid.get_or_insert_with(|| all_slid(self.friction_contacts, &self.displacements));
-        let (mut sum, mut load) = (Vec3::zeros(), 0.0);
-        for c in new.opposites() {
+        mean_by_load(new.opposites().flat_map(|c| {
             let start = slid.partition_point(|s| s.nodes < c.nodes);
-            for s in slid[start..].iter().take_while(|s| s.nodes == c.nodes) {
-                sum += s.displacement * (c.sign * s.load);
-                load += s.load;
-            }
-        }
-        if load > 0.0 { sum / load } else { sum }
+            let own = slid[start..].iter().take_while(move |s| s.nodes == c.nodes);
+            own.map(move |s| (s.displacement * c.sign, s.load))
+        }))
     }
 }
 
 fn all_slid(friction_contacts: &[FrictionContact], displacements: &[Vec3]) -> Vec<Slid> {
     let one = |(g, d): (&FrictionContact, &Vec3)| -> Vec<Slid> {
-        g.opposites().map(|c| Slid { nodes: c.nodes, displacement: d * c.sign, load: g.load }).collect()
+        g.opposites()
+            .map(|c| Slid { nodes: c.nodes, displacement: d * c.sign, load: g.memory.load })
+            .collect()
     };
     let mut slid: Vec<Slid> = friction_contacts.iter().zip(displacements).flat_map(one).collect();
     // A stable sort: the order of the sums decides their rounding.

@@ -4,6 +4,7 @@
 //! is thinner: off the shoulders, down to the waist. A vertical spring for each panel holds the
 //! mean height of its nodes near the initial one, and leaves its edges free to move. Cost: O(n).
 
+use crate::energy::Subset;
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
@@ -53,6 +54,11 @@ impl HeightSprings {
         for (v, m) in values.iter_mut().zip(masses) {
             *v += along * (self.stiffness * m);
         }
+    }
+
+    /// The springs of a subset of the nodes.
+    pub(crate) fn restrict(&self, cut: &Subset) -> Self {
+        Self { heights: cut.pick(&self.heights), groups: cut.pick(&self.groups), ..*self }
     }
 }
 

@@ -13,12 +13,15 @@
 //! Cost: a search for pairs when the cloth has moved by more than a thickness; nothing for a body
 //! without sharp features.
 
+use crate::contact::collision_surface::CollisionSurface;
+use crate::contact::coulomb::{Coulomb, FrictionMemory, mean_by_load};
 use crate::energy::Subset;
 use crate::linear::{Pattern, add_at};
 use crate::mesh::Sheet;
-use crate::statics::forces::body_contact::{BodyContact, NUDGE};
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::contact_potential::ContactPotential;
-use crate::statics::forces::coulomb::{Coulomb, SLIP_TOLERANCE};
+use crate::statics::forces::distance_query::NUDGE;
+use crate::statics::forces::force::{Force, Place, of_type};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -73,12 +76,10 @@ struct Contact {
     /// Unit direction in which the feature presses.
     normal: Vec3,
     potential: ContactPotential,
-    /// Where friction holds the closest point, and how far it had slid at the step's start.
-    anchor: Vec3,
-    slid: Vec3,
-    /// The force that limits friction: the mean over the last steps, N.
-    load: f64,
     friction: f64,
+    memory: FrictionMemory,
+    /// Tangential displacement at the start of the step, m.
+    slid: Vec3,
 }
 
 /// The sharp features and the cloth about them.
@@ -99,8 +100,6 @@ pub struct Ridges {
     disabled_friction: Vec<f64>,
     /// Pairs that may touch, sorted.
     pairs: Vec<Pair>,
-    /// Edges of the cloth among them, sorted.
-    bridges: Vec<[u32; 2]>,
     /// Where the nodes were when the pairs were sought; `None` where the pairs hold for one step
     /// only.
     at: Option<Vec<Vec3>>,
@@ -165,8 +164,7 @@ impl Contact {
     }
 
     fn coulomb(&self) -> Option<Coulomb> {
-        let limit = self.friction * self.load;
-        (limit > 0.0).then_some(Coulomb { normal: self.normal, anchor: self.anchor, limit })
+        Some(self.memory.coulomb(self.normal, self.friction)).filter(|c| c.limit > 0.0)
     }
 
     fn friction_energy(&self, x: &[Vec3]) -> f64 {
@@ -175,11 +173,15 @@ impl Contact {
 }
 
 impl Ridges {
-    /// The sharp features of the body of `body_contact`, and the sheet that lies on it; `None`
+    /// The sharp features of a body, and the sheet that lies on it with `body_contact`; `None`
     /// where the body has none.
-    pub(crate) fn new(body_contact: &BodyContact<'_>, sheet: &Sheet) -> Option<Self> {
+    pub(crate) fn new(
+        body: &dyn CollisionSurface,
+        body_contact: &BodyContact,
+        sheet: &Sheet,
+    ) -> Option<Self> {
         Some(Self {
-            sharp: body_contact.body.sharp()?,
+            sharp: body.sharp()?,
             edges: sheet.distinct_edges().map(|(ends, _)| ends).collect(),
             triangles: sheet.triangles().to_vec(),
             thickness: body_contact.offset,
@@ -188,7 +190,6 @@ impl Ridges {
             friction: body_contact.friction.clone(),
             disabled_friction: vec![0.0; body_contact.friction.len()],
             pairs: Vec::new(),
-            bridges: Vec::new(),
             at: None,
             slack: 0.0,
             pierced: Vec::new(),
@@ -196,37 +197,27 @@ impl Ridges {
         })
     }
 
-    /// Disables friction, or enables it again.
-    pub(crate) fn swap_friction(&mut self) {
-        std::mem::swap(&mut self.friction, &mut self.disabled_friction);
-        self.contacts.clear();
-    }
-
-    /// Whether an edge of the cloth lies over an edge of the body, so that its nodes need no larger
-    /// offset.
-    pub(crate) fn bridges(&self, edge: [u32; 2]) -> bool {
-        self.bridges.binary_search(&[edge[0].min(edge[1]), edge[0].max(edge[1])]).is_ok()
-    }
-
-    /// Makes the pairs valid for `moves` from `x`.
-    pub(crate) fn seek(&mut self, x: &[Vec3], moves: &[Vec3]) {
+    /// Makes the pairs valid for `moves` from `x`. Where they are new, returns the edges of the
+    /// cloth that lie over edges of the body, sorted.
+    pub(crate) fn seek(&mut self, x: &[Vec3], moves: &[Vec3]) -> Option<Vec<[u32; 2]>> {
         let most = self.slack * self.slack;
         let stays = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| (p + m - a).norm_squared() < most;
         if self.at.as_ref().is_some_and(|at| at.iter().zip(x).zip(moves).all(stays)) {
-            return;
+            return None;
         }
         if self.pairs.is_empty() {
             // Most garments meet no sharp feature on most of their way.
             if self.is_far(x, moves) {
                 self.at = None;
-                return;
+                return None;
             }
             self.seek_within(x, moves, FAR);
             if self.pairs.is_empty() {
-                return;
+                return Some(Vec::new());
             }
         }
         self.seek_within(x, moves, SLACK * self.thickness);
+        Some(self.bridges())
     }
 
     fn seek_within(&mut self, x: &[Vec3], moves: &[Vec3], slack: f64) {
@@ -237,10 +228,15 @@ impl Ridges {
             true => self.pairs_about(x, &vec![Vec3::zeros(); x.len()], reach),
             false => self.pairs_about(x, moves, reach),
         };
+    }
+
+    /// The edges of the cloth among the pairs, sorted.
+    fn bridges(&self) -> Vec<[u32; 2]> {
         let edges = self.pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]);
-        self.bridges = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        self.bridges.sort_unstable();
-        self.bridges.dedup();
+        let mut bridges: Vec<[u32; 2]> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        bridges.sort_unstable();
+        bridges.dedup();
+        bridges
     }
 
     /// Whether the whole cloth stays away from every feature on its way.
@@ -279,18 +275,18 @@ impl Ridges {
 
     /// Finds cloth that the body passes through at `x`. Each such edge and corner is then pushed
     /// back over the nearest feature.
-    pub(crate) fn find_pierced(&mut self, body_contact: &BodyContact<'_>, x: &[Vec3]) {
+    pub(crate) fn find_pierced(&mut self, body: &dyn CollisionSurface, x: &[Vec3]) {
         let deepest = self.deepest();
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], deepest);
-        self.pierced = self.sunk(body_contact, &pairs, x, deepest).into_iter().map(|p| p.1).collect();
+        self.pierced = self.sunk(body, &pairs, x, deepest).into_iter().map(|p| p.1).collect();
         self.pierced.sort_unstable();
     }
 
     /// Adds cloth that the body has passed through since: cloth that goes around the end of a
     /// feature may sink behind another.
-    fn find_newly_pierced(&mut self, body_contact: &BodyContact<'_>, x: &[Vec3]) {
+    fn find_newly_pierced(&mut self, body: &dyn CollisionSurface, x: &[Vec3]) {
         let known: Vec<Part> = self.pierced.iter().map(Pair::part).collect();
-        let sunk = self.sunk(body_contact, &self.pairs, x, self.thickness);
+        let sunk = self.sunk(body, &self.pairs, x, self.thickness);
         self.pierced.extend(sunk.into_iter().filter(|(part, _)| !known.contains(part)).map(|p| p.1));
         self.pierced.sort_unstable();
     }
@@ -299,7 +295,7 @@ impl Ridges {
     /// nearest of each part.
     fn sunk(
         &self,
-        body_contact: &BodyContact<'_>,
+        body: &dyn CollisionSurface,
         pairs: &[Pair],
         x: &[Vec3],
         deepest: f64,
@@ -319,7 +315,7 @@ impl Ridges {
             (0..p.count()).map(|k| x[p.nodes[k] as usize] * n.weights[k]).sum::<Vec3>()
         };
         let points: Vec<Vec3> = hidden.iter().map(point).collect();
-        let inside = body_contact.body.nearest(&points, &vec![deepest; points.len()]);
+        let inside = body.nearest(&points, &vec![deepest; points.len()]);
         let sunk = hidden.iter().zip(inside).filter(|(_, n)| n.is_some_and(|n| n.distance < 0.0));
         let mut by_part: Vec<(Part, f64, Pair)> =
             sunk.map(|((p, n), _)| (p.part(), n.distance, *p)).collect();
@@ -331,10 +327,9 @@ impl Ridges {
     /// Whether the body passes through the cloth at `x` near a feature: through its triangles, or
     /// because an edge of the cloth leads into the body. The second finds a thin plate, where the
     /// side of a feature does not decide.
-    pub(crate) fn is_pierced(&self, body_contact: &BodyContact<'_>, x: &[Vec3]) -> bool {
+    pub(crate) fn is_pierced(&self, body: &dyn CollisionSurface, x: &[Vec3]) -> bool {
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.deepest());
-        !leads_in(body_contact, &pairs, x).is_empty()
-            || !self.sunk(body_contact, &pairs, x, self.deepest()).is_empty()
+        !leads_in(body, &pairs, x).is_empty() || !self.sunk(body, &pairs, x, self.deepest()).is_empty()
     }
 
     /// Greatest depth behind a feature from which cloth is pushed back over it, m.
@@ -386,21 +381,16 @@ impl Ridges {
     }
 
     /// Finds the contacts at `x` and their friction. Call it at the start of each step.
-    pub(crate) fn update_contacts(&mut self, body_contact: &BodyContact<'_>, x: &[Vec3]) {
+    pub(crate) fn update_contacts(&mut self, body: &dyn CollisionSurface, x: &[Vec3]) {
         let sharp = &self.sharp;
         self.pierced.retain(|p| {
             let near = p.near(sharp, x);
             sharp.feature(p.feature).side(&near.off) == Side::In || !near.inside
         });
-        self.find_newly_pierced(body_contact, x);
+        self.find_newly_pierced(body, x);
         let before = std::mem::take(&mut self.contacts);
-        let displacements: Vec<Vec3> = before
-            .iter()
-            .map(|c| {
-                let friction = Coulomb { normal: c.normal, anchor: c.anchor, limit: 1.0 };
-                friction.displacement(&c.point(x))
-            })
-            .collect();
+        let displacement = |c: &Contact| c.memory.coulomb(c.normal, 0.0).displacement(&c.point(x));
+        let displacements: Vec<Vec3> = before.iter().map(displacement).collect();
         self.contacts = self
             .feasible(x)
             .iter()
@@ -427,41 +417,45 @@ impl Ridges {
     ) -> Contact {
         let potential = self.potential(pair, near, distance);
         let coefficients = (0..pair.count()).map(|k| near.weights[k] * self.friction[pair.nodes[k] as usize]);
+        let (load, slid) = match before.iter().position(|c| c.pair == *pair) {
+            Some(k) => (before[k].memory.mean_load(potential.force), displacements[k]),
+            None => (potential.force, taken_over(pair, before, displacements)),
+        };
         let mut contact = Contact {
             pair: *pair,
             weights: near.weights,
             normal: near.off / distance,
             potential,
-            anchor: Vec3::zeros(),
-            slid: Vec3::zeros(),
-            load: potential.force,
             friction: coefficients.sum(),
+            memory: FrictionMemory { anchor: Vec3::zeros(), load },
+            slid,
         };
-        match before.iter().position(|c| c.pair == *pair) {
-            Some(k) => {
-                // Contact may alternate from step to step, so the limit of friction is a mean.
-                contact.load = 0.5 * (before[k].load + potential.force);
-                contact.slid = displacements[k];
-            }
-            None => contact.slid = taken_over(pair, before, displacements),
-        }
-        contact.anchor = contact.point(x) - contact.slid;
+        contact.memory.anchor = contact.point(x) - slid;
         contact
     }
+}
 
-    /// Energy at `x`, J; friction is that of the step's start.
-    pub(crate) fn value(&self, x: &[Vec3]) -> f64 {
-        let normal: f64 = self.feasible(x).iter().map(|(p, n, d)| self.potential(p, n, *d).energy).sum();
-        normal + self.contacts.iter().map(|c| c.friction_energy(x)).sum::<f64>()
+impl Force for Ridges {
+    fn boxed(&self) -> Box<dyn Force> {
+        Box::new(self.clone())
     }
 
-    /// The same at the step's start, whose contacts are known, J.
-    pub(crate) fn value_at_start(&self, x: &[Vec3]) -> f64 {
-        self.contacts.iter().map(|c| c.potential.energy + c.friction_energy(x)).sum()
+    fn begin_step(&mut self, at: &Place<'_>) {
+        if let Some(body) = at.body {
+            self.update_contacts(body, at.x);
+        }
     }
 
-    /// Adds the derivative at the step's start, N.
-    pub(crate) fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+    fn add_contact_value(&self, at: &Place<'_>, sum: &mut f64) {
+        let normal: f64 = self.feasible(at.x).iter().map(|(p, n, d)| self.potential(p, n, *d).energy).sum();
+        *sum += normal + self.contacts.iter().map(|c| c.friction_energy(at.x)).sum::<f64>();
+    }
+
+    fn add_contact_value_at_start(&self, x: &[Vec3], sum: &mut f64) {
+        *sum += self.contacts.iter().map(|c| c.potential.energy + c.friction_energy(x)).sum::<f64>();
+    }
+
+    fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
         for c in &self.contacts {
             let friction = c.coulomb().map_or_else(Vec3::zeros, |r| r.gradient(&c.point(x)));
             let push = friction - c.normal * c.potential.force;
@@ -469,9 +463,8 @@ impl Ridges {
         }
     }
 
-    /// Adds the matrix at the step's start, N/m. The sheet couples all nodes of an edge or a
-    /// triangle.
-    pub(crate) fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+    /// The sheet couples all nodes of an edge or a triangle.
+    fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
         for c in &self.contacts {
             let friction = c.coulomb().map_or_else(Matrix3::zeros, |r| r.matrix(&c.point(x)));
             let block = c.normal * c.normal.transpose() * c.potential.curvature + friction;
@@ -485,76 +478,72 @@ impl Ridges {
         }
     }
 
-    /// Moves the anchors of friction along with cloth that slides.
-    pub(crate) fn drag_anchors(&mut self, x: &[Vec3]) {
+    fn end_step(&mut self, x: &[Vec3]) {
         for c in &mut self.contacts {
-            let at = c.point(x);
-            let Some(friction) = c.coulomb() else { continue };
-            if (friction.displacement(&at) - c.slid).norm() > SLIP_TOLERANCE {
-                c.anchor = friction.dragged(&at);
+            if let Some(friction) = c.coulomb() {
+                c.memory.drag(&friction, &c.point(x), &c.slid);
             }
         }
     }
 
-    /// The features and contacts of a subset of the cloth.
-    pub(crate) fn subset(&self, cut: &Subset, nodes: &[u32]) -> Self {
-        let pick = |of: &[f64]| nodes.iter().map(|&i| of[i as usize]).collect::<Vec<f64>>();
-        let knows = |of: &[u32]| cut.touches(of) && cut.has_all(of);
+    fn swap_friction(&mut self) {
+        std::mem::swap(&mut self.friction, &mut self.disabled_friction);
+        self.contacts.clear();
+    }
+
+    fn scale_contact(&mut self, factor: f64) {
+        self.stiffness.iter_mut().for_each(|s| *s *= factor);
+        self.contacts.iter_mut().for_each(|c| c.memory.load *= factor);
+    }
+
+    fn restrict(&self, cut: &Subset) -> Box<dyn Force> {
         let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
-        let mut pierced: Vec<Pair> = self.pierced.iter().filter(|p| knows(&p.nodes)).map(pair).collect();
+        let knows = |p: &&Pair| cut.knows(&p.nodes);
+        let mut pierced: Vec<Pair> = self.pierced.iter().filter(knows).map(pair).collect();
         pierced.sort_unstable();
-        Self {
+        let contacts = self.contacts.iter().filter(|c| cut.knows(&c.pair.nodes));
+        let edges = self.edges.iter().filter(|e| cut.knows(&e[..]));
+        let triangles = self.triangles.iter().filter(|t| cut.knows(&t[..]));
+        Box::new(Self {
             sharp: self.sharp.clone(),
-            edges: self.edges.iter().filter(|e| knows(&e[..])).map(|e| cut.renumbered(*e)).collect(),
-            triangles: self.triangles.iter().filter(|t| knows(&t[..])).map(|t| cut.renumbered(*t)).collect(),
-            thickness: self.thickness,
-            longest: self.longest,
-            stiffness: pick(&self.stiffness),
-            friction: pick(&self.friction),
-            disabled_friction: pick(&self.disabled_friction),
+            edges: edges.map(|e| cut.renumbered(*e)).collect(),
+            triangles: triangles.map(|t| cut.renumbered(*t)).collect(),
+            stiffness: cut.pick(&self.stiffness),
+            friction: cut.pick(&self.friction),
+            disabled_friction: cut.pick(&self.disabled_friction),
             pairs: Vec::new(),
-            bridges: Vec::new(),
             at: None,
             slack: 0.0,
             pierced,
-            contacts: self
-                .contacts
-                .iter()
-                .filter(|c| knows(&c.pair.nodes))
-                .map(|c| Contact { pair: pair(&c.pair), ..*c })
-                .collect(),
-        }
+            contacts: contacts.map(|c| Contact { pair: pair(&c.pair), ..*c }).collect(),
+            ..*self
+        })
     }
 
-    /// Takes over the contacts of a subset, whose node `k` is the node `nodes[k]` of the whole.
-    pub(crate) fn merge(&mut self, cut: &Subset, nodes: &[u32], subset: &Self) {
-        let whole = |p: &Pair| Pair { nodes: p.nodes.map(|i| nodes[i as usize]), ..*p };
-        let knows = |p: &Pair| cut.touches(&p.nodes) && cut.has_all(&p.nodes);
-        self.contacts.retain(|c| !knows(&c.pair));
-        self.contacts.extend(subset.contacts.iter().map(|c| Contact { pair: whole(&c.pair), ..*c }));
+    fn merge(&mut self, cut: &Subset, part: &dyn Force) {
+        let Some(part) = of_type::<Self>(part) else { return };
+        let whole = |p: &Pair| Pair { nodes: cut.in_whole(p.nodes), ..*p };
+        self.contacts.retain(|c| !cut.knows(&c.pair.nodes));
+        self.contacts.extend(part.contacts.iter().map(|c| Contact { pair: whole(&c.pair), ..*c }));
         self.contacts.sort_by_key(|c| c.pair);
-        self.pierced.retain(|p| !knows(p));
-        self.pierced.extend(subset.pierced.iter().map(whole));
+        self.pierced.retain(|p| !cut.knows(&p.nodes));
+        self.pierced.extend(part.pierced.iter().map(whole));
         self.pierced.sort_unstable();
     }
 
-    /// Keeps the contacts and the pierced cloth of the same body from before the fabric changed.
-    pub(crate) fn continue_from(&mut self, before: &Self) {
-        if Arc::ptr_eq(&self.sharp, &before.sharp) {
-            self.contacts = before.contacts.clone();
-            self.pierced = before.pierced.clone();
+    /// Keeps the contacts and the pierced cloth of the same body.
+    fn continue_from(&mut self, before: &dyn Force) {
+        if let Some(before) = of_type::<Self>(before)
+            && Arc::ptr_eq(&self.sharp, &before.sharp)
+        {
+            self.contacts.clone_from(&before.contacts);
+            self.pierced.clone_from(&before.pierced);
         }
-    }
-
-    /// Scales the stiffness of contact and its loads.
-    pub(crate) fn scale(&mut self, factor: f64) {
-        self.stiffness.iter_mut().for_each(|s| *s *= factor);
-        self.contacts.iter_mut().for_each(|c| c.load *= factor);
     }
 }
 
 /// The edges of the cloth among `pairs` that lead from their first node, outside the body, into it.
-fn leads_in(body_contact: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
+fn leads_in(body: &dyn CollisionSurface, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
     let mut edges: Vec<[u32; 2]> =
         pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]).collect();
     edges.sort_unstable();
@@ -562,22 +551,18 @@ fn leads_in(body_contact: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3]) -> Vec<[
     let from: Vec<Vec3> = edges.iter().map(|e| x[e[0] as usize]).collect();
     let moves: Vec<Vec3> = edges.iter().map(|e| x[e[1] as usize] - x[e[0] as usize]).collect();
     let mut ends = moves.clone();
-    body_contact.body.guard(&from, &mut ends, &vec![NUDGE; edges.len()]);
+    body.guard(&from, &mut ends, &vec![NUDGE; edges.len()]);
     let changed = edges.into_iter().zip(moves.iter().zip(&ends)).filter(|(_, (m, end))| m != end);
     changed.map(|(e, _)| e).collect()
 }
 
 /// The mean tangential displacement of the contacts of the same cloth, weighted by their loads.
 fn taken_over(pair: &Pair, before: &[Contact], displacements: &[Vec3]) -> Vec3 {
-    let (mut sum, mut load) = (Vec3::zeros(), 0.0);
-    for (c, displacement) in before.iter().zip(displacements) {
-        let shared = c.pair.nodes[..c.pair.count()].iter().any(|i| pair.nodes.contains(i));
-        if shared && c.load > 0.0 {
-            sum += displacement * c.load;
-            load += c.load;
-        }
-    }
-    if load > 0.0 { sum / load } else { sum }
+    let is_same = |c: &Contact| {
+        c.memory.load > 0.0 && c.pair.nodes[..c.pair.count()].iter().any(|i| pair.nodes.contains(i))
+    };
+    let own = before.iter().zip(displacements).filter(|(c, _)| is_same(c));
+    mean_by_load(own.map(|(c, displacement)| (*displacement, c.memory.load)))
 }
 
 #[cfg(test)]

@@ -3,7 +3,9 @@
 //! The potential of a pair at gap `d` is `f sqrt(d² + s²)`, whose force is nearly constant above
 //! the softening length `s`. Cost: O(1) a pair.
 
+use crate::energy::Subset;
 use crate::linear::{Pattern, add_at};
+use crate::statics::forces::force::Force;
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
@@ -25,18 +27,18 @@ impl SeamForce {
         (d, (d.norm_squared() + self.softening * self.softening).sqrt())
     }
 
-    pub(crate) fn value(&self, x: &[Vec3]) -> f64 {
+    fn value(&self, x: &[Vec3]) -> f64 {
         self.force * self.reach(x).1
     }
 
-    pub(crate) fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+    fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
         let (d, r) = self.reach(x);
         let pull = d * (self.force / r);
         g[self.nodes[0] as usize] -= pull;
         g[self.nodes[1] as usize] += pull;
     }
 
-    pub(crate) fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+    fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
         let [i, j] = self.nodes;
         let (_, r) = self.reach(x);
         // The secant stiffness bounds the second derivative, so that Newton's step never
@@ -50,12 +52,45 @@ impl SeamForce {
     }
 }
 
+/// The closing forces of all seams.
+#[derive(Debug, Clone)]
+pub struct SeamForces(pub Vec<SeamForce>);
+
+impl SeamForces {
+    /// The widest gap of seams with a closing force, m.
+    pub(crate) fn widest(&self, x: &[Vec3]) -> f64 {
+        self.0.iter().map(|t| (x[t.nodes[0] as usize] - x[t.nodes[1] as usize]).norm()).fold(0.0, f64::max)
+    }
+}
+
+impl Force for SeamForces {
+    fn boxed(&self) -> Box<dyn Force> {
+        Box::new(self.clone())
+    }
+
+    fn couplings(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.0.iter().for_each(|t| visit(&t.nodes));
+    }
+
+    fn value(&self, x: &[Vec3]) -> f64 {
+        self.0.iter().map(|t| t.value(x)).sum()
+    }
+
+    fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+        self.0.iter().for_each(|t| t.add_gradient(x, g));
+    }
+
+    fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+        self.0.iter().for_each(|t| t.add_matrix(x, pattern, values));
+    }
+
+    fn restrict(&self, cut: &Subset) -> Box<dyn Force> {
+        let touched = self.0.iter().filter(|t| cut.touches(&t.nodes));
+        Box::new(Self(touched.map(|t| SeamForce { nodes: cut.renumbered(t.nodes), ..*t }).collect()))
+    }
+}
+
 /// The widest gap of pairs of vertices, m.
 pub(crate) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
-}
-
-/// The widest gap of seams with a closing force, m.
-pub(crate) fn widest_open_seam(seam_forces: &[SeamForce], x: &[Vec3]) -> f64 {
-    seam_forces.iter().map(|t| (x[t.nodes[0] as usize] - x[t.nodes[1] as usize]).norm()).fold(0.0, f64::max)
 }

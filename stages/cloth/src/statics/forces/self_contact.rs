@@ -7,9 +7,11 @@
 //! Limit: pairs are found by the caller (see `newton/nearby`).
 
 use crate::contact::friction::FrictionContact;
+use crate::energy::Subset;
 use crate::linear::{Pattern, add_at};
 use crate::statics::forces::contact::Contact;
 use crate::statics::forces::contact_potential::ContactPotential;
+use crate::statics::forces::force::{Force, Place, of_type};
 use crate::statics::forces::friction_history::{FrictionHistory, between};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
@@ -86,29 +88,6 @@ impl SelfContact {
         self.friction_contacts = self.contacts.iter().map(friction).collect();
     }
 
-    /// Disables friction, or enables it again.
-    pub fn swap_friction(&mut self) {
-        std::mem::swap(&mut self.friction, &mut self.disabled_friction);
-        self.friction_contacts.clear();
-    }
-
-    /// Replaces the friction contacts that are `replaced` by new ones, in the order of the
-    /// contacts.
-    pub(crate) fn replace_friction(
-        &mut self,
-        replaced: impl Fn(&FrictionContact) -> bool,
-        new: impl Iterator<Item = FrictionContact>,
-    ) {
-        self.friction_contacts.retain(|g| !replaced(g));
-        self.friction_contacts.extend(new);
-        self.friction_contacts.sort_by_key(FrictionContact::key);
-    }
-
-    /// Moves the anchors of friction along with cloth that slides.
-    pub fn drag_anchors(&mut self, x: &[Vec3]) {
-        self.friction_contacts.iter_mut().for_each(|g| g.drag_anchors(x));
-    }
-
     /// The contacts at `x`, in the order of the pairs.
     #[must_use]
     pub fn touching(&self, x: &[Vec3]) -> Vec<Contact> {
@@ -163,23 +142,6 @@ impl SelfContact {
         }
     }
 
-    /// The nodes that each contact couples.
-    pub fn groups(&self) -> impl Iterator<Item = &[u32; 4]> {
-        self.contacts.iter().chain(&self.intersections).map(|c| &c.nodes)
-    }
-
-    /// Energy of the contacts at `x`, J.
-    #[must_use]
-    pub fn value(&self, x: &[Vec3]) -> f64 {
-        contact_energy(&self.touching(x)) + self.intersection_energy(x) + self.friction_energy(x)
-    }
-
-    /// The same at the step's start, whose contacts are known, J.
-    #[must_use]
-    pub fn value_at_start(&self, x: &[Vec3]) -> f64 {
-        contact_energy(&self.contacts) + self.intersection_energy(x) + self.friction_energy(x)
-    }
-
     /// Energy of friction, J.
     fn friction_energy(&self, x: &[Vec3]) -> f64 {
         self.friction_contacts.iter().map(|g| g.coulomb().value(&g.at(x))).sum()
@@ -194,9 +156,36 @@ impl SelfContact {
         };
         self.intersections.iter().map(one).sum()
     }
+}
 
-    /// Adds the derivative at the step's start `x`, N.
-    pub fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+impl Force for SelfContact {
+    fn boxed(&self) -> Box<dyn Force> {
+        Box::new(self.clone())
+    }
+
+    fn candidates(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.pairs.iter().for_each(|p| visit(&p.nodes));
+    }
+
+    fn collisions(&self, visit: &mut dyn FnMut(&[u32; 4])) {
+        self.contacts.iter().chain(&self.intersections).for_each(|c| visit(&c.nodes));
+    }
+
+    fn begin_step(&mut self, at: &Place<'_>) {
+        self.update_contacts(at.x);
+    }
+
+    fn add_contact_value(&self, at: &Place<'_>, sum: &mut f64) {
+        *sum += contact_energy(&self.touching(at.x))
+            + self.intersection_energy(at.x)
+            + self.friction_energy(at.x);
+    }
+
+    fn add_contact_value_at_start(&self, x: &[Vec3], sum: &mut f64) {
+        *sum += contact_energy(&self.contacts) + self.intersection_energy(x) + self.friction_energy(x);
+    }
+
+    fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
         for (k, c) in self.contacts.iter().chain(&self.intersections).enumerate() {
             let mut push = c.normal * -c.potential.force;
             if let Some(friction) = self.friction_contacts.get(k) {
@@ -208,8 +197,7 @@ impl SelfContact {
         }
     }
 
-    /// Adds the matrix at the step's start `x`, N/m.
-    pub fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+    fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
         for (k, c) in self.contacts.iter().chain(&self.intersections).enumerate() {
             let mut block = c.normal * c.normal.transpose() * c.potential.curvature;
             if let Some(friction) = self.friction_contacts.get(k) {
@@ -225,6 +213,62 @@ impl SelfContact {
                     }
                 }
             }
+        }
+    }
+
+    fn end_step(&mut self, x: &[Vec3]) {
+        self.friction_contacts.iter_mut().for_each(|c| c.drag_anchor(x));
+    }
+
+    fn swap_friction(&mut self) {
+        std::mem::swap(&mut self.friction, &mut self.disabled_friction);
+        self.friction_contacts.clear();
+    }
+
+    fn scale_contact(&mut self, factor: f64) {
+        self.stiffness.iter_mut().for_each(|s| *s *= factor);
+        self.friction_contacts.iter_mut().for_each(|c| c.memory.load *= factor);
+    }
+
+    fn restrict(&self, cut: &Subset) -> Box<dyn Force> {
+        let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
+        let held = |h: &Vec<Pair>| {
+            let mut held: Vec<Pair> = h.iter().filter(|p| cut.knows(&p.nodes)).map(pair).collect();
+            held.sort_unstable();
+            held
+        };
+        // Friction outlives its pair by one step.
+        let friction = self.friction_contacts.iter().filter(|c| cut.knows(&c.nodes));
+        let renumbered = |c: &FrictionContact| FrictionContact { nodes: cut.renumbered(c.nodes), ..*c };
+        Box::new(Self {
+            stiffness: cut.pick(&self.stiffness),
+            order: cut.pick(&self.order),
+            corners: cut.pick(&self.corners),
+            friction: cut.pick(&self.friction),
+            disabled_friction: cut.pick(&self.disabled_friction),
+            friction_contacts: friction.map(renumbered).collect(),
+            pairs: self.pairs.iter().filter(|p| cut.touches(&p.nodes)).map(pair).collect(),
+            held: self.held.as_ref().map(held),
+            contacts: Vec::new(),
+            intersections: Vec::new(),
+            intersecting: Vec::new(),
+            ..*self
+        })
+    }
+
+    /// Takes over the friction of the subset, in the order of the contacts.
+    fn merge(&mut self, cut: &Subset, part: &dyn Force) {
+        let Some(part) = of_type::<Self>(part) else { return };
+        let whole = |c: &FrictionContact| FrictionContact { nodes: cut.in_whole(c.nodes), ..*c };
+        self.friction_contacts.retain(|c| !cut.touches(&c.nodes));
+        self.friction_contacts.extend(part.friction_contacts.iter().map(whole));
+        self.friction_contacts.sort_by_key(FrictionContact::key);
+    }
+
+    fn continue_from(&mut self, before: &dyn Force) {
+        if let Some(before) = of_type::<Self>(before) {
+            self.pairs.clone_from(&before.pairs);
+            self.friction_contacts.clone_from(&before.friction_contacts);
         }
     }
 }

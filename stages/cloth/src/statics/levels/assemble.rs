@@ -8,6 +8,8 @@ use crate::mesh::Sheet;
 use crate::scene::Scene;
 use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::elastic::Elastic;
+use crate::statics::forces::force::Force;
+use crate::statics::forces::loads::Loads;
 use crate::statics::forces::ridges::Ridges;
 use crate::statics::forces::seam_force::SeamForce;
 use crate::statics::forces::self_contact::SelfContact;
@@ -50,12 +52,22 @@ pub(crate) fn assemble<'a>(
     let cloths = cloths(scene);
     let nodes = Nodes::new(pieces, sheet, open);
     let stiffness = contact_stiffness(sheet, &nodes, &cloths);
-    let body_contact = body.map(|b| BodyContact {
-        keeps_edges_out: pieces.rest.len() == scene.rest.len(),
-        ..body_contact(b, scene, sheet, &nodes, &cloths, open, stiffness.clone())
-    });
-    let self_contact =
-        scene.self_collision.then(|| self_contact(scene, sheet, &nodes, &cloths, open, stiffness));
+    let mut forces: Vec<Box<dyn Force>> = Vec::new();
+    let mut ridges = None;
+    if let Some(body) = body {
+        let contact = BodyContact {
+            keeps_edges_out: pieces.rest.len() == scene.rest.len(),
+            ..body_contact(body, scene, sheet, &nodes, &cloths, open, stiffness.clone())
+        };
+        ridges = Ridges::new(body.surface, &contact, sheet);
+        forces.push(Box::new(contact));
+    }
+    if scene.self_collision {
+        forces.push(Box::new(self_contact(scene, sheet, &nodes, &cloths, open, stiffness)));
+    }
+    if let Some(ridges) = ridges {
+        forces.push(Box::new(ridges));
+    }
     let uncut = pieces.uncut().transpose()?;
     let one = [&scene.material];
     let cloth = Cloth {
@@ -67,23 +79,13 @@ pub(crate) fn assemble<'a>(
     };
     let creases = if open { Vec::new() } else { pieces.creases(sheet) };
     let elastic = Elastic::new(models, &cloth, pieces.springs(open), &creases)?;
-    let n = sheet.vertex_count();
+    let gravity = if open { Vec3::zeros() } else { gravity(scene) };
     Ok(System {
         elastic,
-        masses: sheet.masses().to_vec(),
-        gravity: if open { Vec3::zeros() } else { gravity(scene) },
-        push: vec![],
-        height_springs: None,
+        loads: Loads::new(sheet.masses().to_vec(), gravity),
         pinned: nodes.pinned,
-        seam_forces: vec![],
-        ridges: body_contact.as_ref().and_then(|c| Ridges::new(c, sheet)),
-        body_contact,
-        self_contact,
-        touches: vec![],
-        anchors: vec![None; n],
-        slides: vec![Vec3::zeros(); n],
-        loads: vec![0.0; n],
-        distance_cache: vec![],
+        body: body.map(|b| b.surface),
+        forces,
         brakes: vec![],
         targets: vec![],
     })
@@ -120,28 +122,30 @@ fn contact_stiffness(sheet: &Sheet, nodes: &Nodes, cloths: &[&Fabric]) -> Vec<f6
 }
 
 /// Contact with the body, without friction while seams are `open`.
-fn body_contact<'a>(
-    body: Collider<'a>,
+fn body_contact(
+    body: Collider<'_>,
     scene: &Scene,
     sheet: &Sheet,
     nodes: &Nodes,
     cloths: &[&Fabric],
     open: bool,
     stiffness: Vec<f64>,
-) -> BodyContact<'a> {
+) -> BodyContact {
     let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
     let thickness = |p: &usize| cloths[*p].thickness;
     let friction = |p: usize| {
         let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
         if open { 0.0 } else { own.unwrap_or(body.friction) }
     };
+    let n = sheet.vertex_count();
     BodyContact {
-        body: body.surface,
         friction: nodes.panel.iter().map(|&p| friction(p)).collect(),
+        disabled_friction: vec![0.0; n],
         offsets: nodes.panel.iter().map(thickness).collect(),
         offset: nodes.panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
         depth: longest.clamp(0.02, 0.1),
         edges: sheet.distinct_edges().collect(),
+        bridges: vec![],
         keeps_edges_out: false,
         grows_offsets: false,
         stiffens_inside: false,
@@ -149,7 +153,11 @@ fn body_contact<'a>(
         #[cfg(toile_without = "body")]
         never: body.never,
         stiffness,
-        overloaded: Vec::new(),
+        overloaded: vec![],
+        touches: vec![],
+        memory: vec![None; n],
+        slides: vec![Vec3::zeros(); n],
+        distance_cache: vec![],
     }
 }
 

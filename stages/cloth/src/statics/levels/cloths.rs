@@ -7,8 +7,8 @@ use toile_geometry::components::groups;
 
 /// The piece of each node of a system.
 pub(crate) fn pieces_of(system: &System<'_>) -> Vec<u32> {
-    let (mut piece, _) = groups(system.masses.len(), system.links().into_iter());
-    piece.iter_mut().zip(&system.masses).filter(|(_, m)| **m == 0.0).for_each(|(p, _)| *p = NO_PIECE);
+    let (mut piece, _) = groups(system.loads.masses.len(), system.links().into_iter());
+    piece.iter_mut().zip(&system.loads.masses).filter(|(_, m)| **m == 0.0).for_each(|(p, _)| *p = NO_PIECE);
     piece
 }
 

@@ -1,6 +1,7 @@
 //! One mesh level of a sewn garment, with its state.
 
 use crate::mesh::Sheet;
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::system::System;
 use nalgebra::{Rotation3, Vector3};
 
@@ -15,16 +16,16 @@ pub(crate) struct Level<'s> {
     pub(crate) layout: Vec<Vec3>,
     /// The positions of the nodes, m.
     pub(crate) x: Vec<Vec3>,
-    /// The coefficients of friction with the body while friction is disabled.
-    pub(crate) friction: Option<Vec<f64>>,
+    /// Whether friction is disabled.
+    pub(crate) is_frictionless: bool,
 }
 
 impl Level<'_> {
     /// Sets the positions of its nodes and their tangential displacements. `is_prolonged` tells
     /// that they come from a coarser level.
     pub(crate) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>, is_prolonged: bool) {
-        if slides.len() == x.len() {
-            self.system.slides = slides;
+        if let Some(contact) = self.system.get_mut::<BodyContact>().filter(|_| slides.len() == x.len()) {
+            contact.slides = slides;
         }
         self.system.elastic.hold(&x, is_prolonged);
         self.x = x;
@@ -32,17 +33,18 @@ impl Level<'_> {
 
     /// Disables friction.
     pub(crate) fn disable_friction(&mut self) {
-        if self.friction.is_none() {
-            let mut none = vec![0.0; self.x.len()];
-            self.system.swap_friction(&mut none);
-            self.friction = Some(none);
+        if !std::mem::replace(&mut self.is_frictionless, true) {
+            self.system.swap_friction();
         }
     }
 
     /// Enables friction; returns whether it was disabled.
     pub(crate) fn enable_friction(&mut self) -> bool {
-        let friction = self.friction.take();
-        friction.map(|mut f| self.system.swap_friction(&mut f)).is_some()
+        let was_disabled = std::mem::take(&mut self.is_frictionless);
+        if was_disabled {
+            self.system.swap_friction();
+        }
+        was_disabled
     }
 
     /// Mean length of its edges, m.
@@ -62,8 +64,8 @@ impl Level<'_> {
     }
 
     fn middle_of(&self, x: &[Vec3]) -> Vec3 {
-        let sum: Vec3 = x.iter().zip(&self.system.masses).map(|(p, m)| p * *m).sum();
-        sum / self.system.masses.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+        let sum: Vec3 = x.iter().zip(&self.system.loads.masses).map(|(p, m)| p * *m).sum();
+        sum / self.system.loads.masses.iter().sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
     /// Distance of its centre of mass from the initial one, m.
@@ -74,13 +76,13 @@ impl Level<'_> {
     /// Angle by which it has turned about its axis along gravity since the start, rad.
     pub(crate) fn turned(&self) -> f64 {
         let arms = |x| arms(&self.axis(), &self.middle_of(x), x);
-        turn(&self.axis(), &self.system.masses, &arms(&self.layout), &arms(&self.x))
+        turn(&self.axis(), &self.system.loads.masses, &arms(&self.layout), &arms(&self.x))
     }
 
     /// Turns it about its axis towards its initial orientation, no farther than body contact can
     /// push cloth out. A level with pins stays.
     pub(crate) fn turn_back(&mut self) {
-        let Some(depth) = self.system.body_contact.as_ref().map(|s| s.depth) else { return };
+        let Some(depth) = self.system.get::<BodyContact>().map(|c| c.depth) else { return };
         if self.system.pinned.contains(&true) {
             return;
         }
@@ -94,15 +96,15 @@ impl Level<'_> {
     /// Forces on its nodes that turn it about its axis, whose sum is a share of its weight, N.
     pub(crate) fn twist(&self, share: f64) -> Vec<Vec3> {
         let arms = arms(&self.axis(), &self.middle(), &self.x);
-        let torque: f64 = arms.iter().zip(&self.system.masses).map(|(a, m)| m * a.norm()).sum();
-        let weight = self.system.gravity.norm() * self.system.masses.iter().sum::<f64>();
+        let torque: f64 = arms.iter().zip(&self.system.loads.masses).map(|(a, m)| m * a.norm()).sum();
+        let weight = self.system.loads.gravity.norm() * self.system.loads.masses.iter().sum::<f64>();
         let pull = share * weight / torque.max(f64::MIN_POSITIVE);
-        arms.iter().zip(&self.system.masses).map(|(a, m)| a * (pull * m)).collect()
+        arms.iter().zip(&self.system.loads.masses).map(|(a, m)| a * (pull * m)).collect()
     }
 
     /// The direction against gravity; zero without gravity.
     fn axis(&self) -> Vec3 {
-        self.system.gravity.try_normalize(0.0).map_or_else(Vec3::zeros, |g| -g)
+        self.system.loads.gravity.try_normalize(0.0).map_or_else(Vec3::zeros, |g| -g)
     }
 }
 

@@ -237,8 +237,8 @@ impl Pieces {
 
     /// The offset of body contact at each vertex, m.
     pub(crate) fn offsets(&self, system: &System<'_>) -> Vec<f64> {
-        let of = |s: &BodyContact<'_>| self.node.iter().map(|&n| s.offsets[n as usize]).collect();
-        system.body_contact.as_ref().map_or_else(Vec::new, of)
+        let of = |s: &BodyContact| self.node.iter().map(|&n| s.offsets[n as usize]).collect();
+        system.get::<BodyContact>().map_or_else(Vec::new, of)
     }
 
     /// The value of each vertex's node.

@@ -42,7 +42,7 @@ impl NewtonState {
         let options = NewtonOptions { non_static: 0.0, ..*options };
         let mut subdomain = Subdomain::of(system, active);
         let (mut own, layout) = (subdomain.pick(x), subdomain.pick(self.linear.layout()));
-        let reach = system.self_contact.as_ref().map_or(f64::INFINITY, SelfContact::slack);
+        let reach = system.get::<SelfContact>().map_or(f64::INFINITY, SelfContact::slack);
         let nearby = Nearby::of_subdomain(subdomain.pick(self.nearby.at()), reach);
         rayon::scope(|_| {
             let mut inner = Self::among(nearby, &mut subdomain.system, &layout, &own, self.dt);

@@ -10,7 +10,6 @@ use crate::statics::factor::mixed::{Matrix, Mixed};
 use crate::statics::factor::multifrontal::{Halt, Stop, Symbolic};
 use crate::statics::factor::nested_dissection::smoothed;
 use crate::statics::factor::scalar::Precision;
-use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
@@ -55,7 +54,8 @@ impl Linear {
     pub(crate) fn new(system: &mut System<'_>, layout: &[Vec3]) -> Self {
         let own = system.pattern();
         system.elastic.bind(&own);
-        let touched = system.self_contact.iter().flat_map(SelfContact::groups).map(|g| (*g, 0)).collect();
+        let mut touched = BTreeMap::new();
+        system.collisions(&mut |g| _ = touched.insert(*g, 0));
         let (pattern, slots) = widened(&own, &touched);
         system.elastic.follow(&pattern, &slots);
         let layout = smoothed(&own, layout);
@@ -73,11 +73,12 @@ impl Linear {
     /// did.
     pub(crate) fn follow(&mut self, system: &mut System<'_>) -> bool {
         self.steps += 1;
-        let groups = || system.self_contact.iter().flat_map(SelfContact::groups);
-        self.touched.extend(groups().map(|g| (*g, self.steps)));
-        let known = groups().all(|g| self.pattern.couples(g));
+        let (now, mut known) = (self.steps, true);
+        system.collisions(&mut |g| {
+            self.touched.insert(*g, now);
+            known = known && self.pattern.couples(g);
+        });
         if !known {
-            let now = self.steps;
             self.touched.retain(|_, last| now - *last < REMEMBERED);
             self.widen(system);
         }
@@ -148,6 +149,7 @@ mod tests {
     use super::*;
     use crate::energy::Models;
     use crate::scene::generate;
+    use crate::statics::forces::self_contact::SelfContact;
     use crate::statics::levels::assemble::{assemble, cloths};
     use crate::statics::levels::pieces::Pieces;
     use toile_geometry::pair::{Kind, Pair};
@@ -164,8 +166,9 @@ mod tests {
         let [a, b, c] = scene.triangles[0];
         let middle = (x[a as usize] + x[b as usize] + x[c as usize]) / 3.0;
         let pair = Pair { kind: Kind::VertexTriangle, nodes: [n, a, b, c] };
-        system.self_contact.as_mut().unwrap().pairs = vec![pair];
-        let thickness = system.self_contact.as_ref().unwrap().thickness;
+        let self_contact = system.get_mut::<SelfContact>().unwrap();
+        self_contact.pairs = vec![pair];
+        let thickness = self_contact.thickness;
         let mut linear = Linear::new(&mut system, &scene.positions);
         let mut follow = |height: f64, system: &mut System<'_>| {
             x[n as usize] = middle + Vec3::y() * height;

@@ -48,7 +48,7 @@ impl Nearby {
 
     /// Seeks the pairs about `x`, so that they are valid for a subdomain of the `active` nodes.
     pub(crate) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3], active: &[bool]) {
-        if let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) {
+        if let (Some(tree), Some(self_contact)) = (&self.tree, system.get_mut::<SelfContact>()) {
             let still = vec![Vec3::zeros(); x.len()];
             let mut moved = outside(&self.at, x, &still, self_contact.slack());
             let near_end = outside(&self.at, x, &still, KEPT * self_contact.slack());
@@ -92,7 +92,7 @@ impl Nearby {
 
     /// Makes the pairs valid for `moves` from `x`.
     pub(crate) fn seek(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &[Vec3]) {
-        let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) else { return };
+        let (Some(tree), Some(self_contact)) = (&self.tree, system.get_mut::<SelfContact>()) else { return };
         let slack = self_contact.slack();
         let moved = outside(&self.at, x, moves, slack);
         if !moved.contains(&true) {
@@ -150,7 +150,7 @@ impl Nearby {
         if self.tree.is_none() && self.fence.is_none() {
             return 1.0;
         }
-        let Some(self_contact) = &system.self_contact else { return 1.0 };
+        let Some(self_contact) = system.get::<SelfContact>() else { return 1.0 };
         let wanted = norm(moves);
         let apart: Vec<Pair> =
             self_contact.pairs.iter().filter(|p| !self_contact.is_intersecting(p)).copied().collect();
@@ -163,7 +163,7 @@ impl Nearby {
             system.clear_of_body(x, moves, |i| changed[i]);
             self.limit_step(system, x, moves);
         }
-        let free = system.self_contact.as_ref().is_none_or(|c| c.intersecting.is_empty());
+        let free = !system.is_intersecting();
         if wanted > 0.0 && free { norm(moves) / wanted } else { 1.0 }
     }
 
@@ -182,7 +182,7 @@ impl Nearby {
 
     /// Shortens moves until no pair collides.
     fn limit_step(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
-        let Some(self_contact) = &mut system.self_contact else { return };
+        let Some(self_contact) = system.get_mut::<SelfContact>() else { return };
         let counts = |p: &Pair| !self_contact.is_intersecting(p);
         // Pairs sought at a position are valid for every short move, those sought along a move for
         // that move.
@@ -206,7 +206,7 @@ impl Nearby {
 
     /// Finds the crossings at `x`, which self-contact then resolves.
     pub(crate) fn resolve_intersections(&mut self, system: &mut System<'_>, x: &[Vec3]) {
-        if let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) {
+        if let (Some(tree), Some(self_contact)) = (&self.tree, system.get_mut::<SelfContact>()) {
             self_contact.resolve_intersections(&tree.crossings(x), x);
             self.jammed = false;
         }

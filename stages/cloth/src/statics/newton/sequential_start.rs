@@ -12,6 +12,7 @@
 
 use crate::scene::Scene;
 use crate::statics::factor::multifrontal::{Halt, Stop};
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::count_cloths;
 use crate::statics::newton::nearby::Nearby;
@@ -82,7 +83,7 @@ pub(crate) fn start_one_by_one(
 
 /// The cloth that each node belongs to, and how many there are.
 fn cloths(system: &System<'_>) -> (Vec<u32>, usize) {
-    groups(system.masses.len(), system.links().into_iter())
+    groups(system.loads.masses.len(), system.links().into_iter())
 }
 
 /// The cloths with triangles, from the innermost: by layer, then by mean distance from the body, or
@@ -90,8 +91,9 @@ fn cloths(system: &System<'_>) -> (Vec<u32>, usize) {
 fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u32> {
     let far = distances(system, x);
     let mut mean = vec![(0u32, 0.0, 0usize); count];
+    let self_contact = system.get::<SelfContact>();
     for (i, &c) in of.iter().enumerate() {
-        let layer = system.self_contact.as_ref().and_then(|c| c.order.get(i)).copied().unwrap_or(0);
+        let layer = self_contact.and_then(|c| c.order.get(i)).copied().unwrap_or(0);
         let m = &mut mean[c as usize];
         *m = (m.0.max(layer), m.1 + far[i], m.2 + 1);
     }
@@ -104,10 +106,10 @@ fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u3
 }
 
 fn distances(system: &System<'_>, x: &[Vec3]) -> Vec<f64> {
-    let Some(contact) = &system.body_contact else {
-        return x.iter().map(|p| -p.dot(&system.gravity)).collect();
+    let Some(body) = system.body else {
+        return x.iter().map(|p| -p.dot(&system.loads.gravity)).collect();
     };
-    let near = contact.body.nearest(x, &vec![f64::INFINITY; x.len()]);
+    let near = body.nearest(x, &vec![f64::INFINITY; x.len()]);
     near.into_iter().map(|n| n.map_or(f64::INFINITY, |n| n.distance)).collect()
 }
 
@@ -143,7 +145,7 @@ impl StackStart<'_> {
         watch: &mut Watch<'_>,
     ) -> Result<ControlFlow<()>, Halt> {
         let tree = self.tree.clone().with_active(active);
-        let thickness = system.self_contact.as_ref().map_or(0.0, |c| c.thickness);
+        let thickness = system.get::<SelfContact>().map_or(0.0, |c| c.thickness);
         let own = active.iter().filter(|a| **a).count().max(1);
         let mut attempt = Attempt { reach: FIRST_REACH * thickness, dt: self.options.first, steps: 0 };
         while attempt.steps < STEPS {
@@ -192,7 +194,7 @@ impl StackStart<'_> {
         active: &[bool],
         reach: f64,
     ) -> Subdomain<'s> {
-        let Some(self_contact) = &mut system.self_contact else {
+        let Some(self_contact) = system.get_mut::<SelfContact>() else {
             return Subdomain::of(system, active.to_vec());
         };
         // These pairs are those of the last cloth.

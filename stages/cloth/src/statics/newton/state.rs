@@ -1,7 +1,7 @@
 //! The options and the state of Newton's method, and what it reports.
 
 use crate::statics::factor::scalar::Precision;
-use crate::statics::forces::body_contact::ContactQuery;
+use crate::statics::forces::distance_query::ContactQuery;
 use crate::statics::forces::system::System;
 use crate::statics::newton::linear::Linear;
 use crate::statics::newton::nearby::Nearby;

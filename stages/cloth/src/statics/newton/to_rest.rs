@@ -26,6 +26,7 @@
 //! search evaluated at its end. Limits: one of many equilibria is found.
 
 use crate::statics::factor::multifrontal::{Halt, Stop};
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::newton::line_search::{descend, shorten};
 use crate::statics::newton::linear::Linear;
@@ -279,14 +280,14 @@ impl NewtonState {
         let left = self.nearby.limit(system, x, moves);
         system.stop_at_ridges(x, moves);
         // Seams move over long distances, whatever lies between.
-        Limits { is_led, kept: if system.seam_forces.is_empty() { left } else { 1.0 } }
+        Limits { is_led, kept: if system.is_sewing() { 1.0 } else { left } }
     }
 
     /// Whether a step that was limited for some nodes leads the others uphill, so that no share of
     /// it lowers the potential.
     fn is_misled(&self, system: &System<'_>, g: &[Vec3], moves: &[Vec3]) -> bool {
         let slope: f64 = g.iter().zip(moves).map(|(g, m)| g.dot(m)).sum();
-        slope > 0.0 && system.seam_forces.is_empty() && !system.is_intersecting()
+        slope > 0.0 && !system.is_sewing() && !system.is_intersecting()
     }
 
     /// Makes the step, shortened by a line search where the potential at the `start` is given.
@@ -327,7 +328,7 @@ impl NewtonState {
         self.proof_steps += 1;
         self.verifying = self.outcome.share == 1.0 && self.proof_steps < MOST_PROOF_STEPS;
         (self.slow_steps, self.has_failed) = (0, true);
-        system.self_contact.iter_mut().for_each(|c| c.hold(true));
+        system.get_mut::<SelfContact>().into_iter().for_each(|c| c.hold(true));
     }
 
     /// Updates dt and the history of friction, and decides whether a proof step follows.
@@ -340,13 +341,13 @@ impl NewtonState {
         options: &NewtonOptions,
     ) {
         self.proof_steps = 0;
-        let is_layered = system.self_contact.as_ref().is_some_and(|c| 2 * c.contacts.len() > x.len());
+        let is_layered = system.get::<SelfContact>().is_some_and(|c| 2 * c.contacts.len() > x.len());
         self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, options);
         if !is_slow {
             system.drag_anchors(x);
         }
         if self.outcome.speed > FAST * options.speed {
-            system.self_contact.iter_mut().for_each(|c| c.hold(false));
+            system.get_mut::<SelfContact>().into_iter().for_each(|c| c.hold(false));
         }
         let is_slow_step = is_slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
         self.outcome.at_rest |= is_slow_step && options.proof == Proof::ProofOrLongStep;
@@ -470,7 +471,7 @@ mod tests {
         let up: Vec<Vec3> = g.iter().map(|g| g * 1e-3).collect();
         assert!(!newton.is_misled(&system, &g, &down));
         assert!(newton.is_misled(&system, &g, &up));
-        system.seam_forces = vec![SeamForce { nodes: [0, 1], force: 1.0, softening: 1e-3 }];
+        system.set_seam_forces(vec![SeamForce { nodes: [0, 1], force: 1.0, softening: 1e-3 }]);
         assert!(!newton.is_misled(&system, &g, &up));
     }
 

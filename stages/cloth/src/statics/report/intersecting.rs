@@ -2,6 +2,7 @@
 //! a solution.
 
 use crate::scene::Scene;
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::levels::mesh_level::Level;
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::report::error::{StaticsError, Unsolvable};
@@ -33,7 +34,7 @@ pub(crate) fn intersecting_error(scene: &Scene, gravity: f64, intersections: Int
 
 /// The intersections of a level.
 pub(crate) fn intersections_of(pieces: &Pieces, level: &Level<'_>) -> Intersections {
-    let groups = level.system.self_contact.as_ref().map_or_else(Vec::new, |c| c.intersecting_nodes(&level.x));
+    let groups = level.system.get::<SelfContact>().map_or_else(Vec::new, |c| c.intersecting_nodes(&level.x));
     let first = groups.first().copied().unwrap_or_default();
     let panel = |node: u32| {
         let vertex = pieces.node.iter().position(|n| *n == node);

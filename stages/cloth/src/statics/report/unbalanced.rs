@@ -1,5 +1,7 @@
 //! The node with the greatest residual force, and what it is in contact with. Cost: O(n).
 
+use crate::statics::forces::body_contact::BodyContact;
+use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::Pieces;
 use nalgebra::Vector3;
@@ -38,8 +40,8 @@ pub(crate) fn unbalanced(system: &System<'_>, gradient: &[Vec3], pieces: &Pieces
     }
     let (node, force) = worst;
     let meets_cloth =
-        system.self_contact.as_ref().is_some_and(|l| l.contacts.iter().any(|c| c.nodes.contains(&node)));
-    let meets_body = system.touches.iter().any(|t| t.node == node);
+        system.get::<SelfContact>().is_some_and(|l| l.contacts.iter().any(|c| c.nodes.contains(&node)));
+    let meets_body = system.get::<BodyContact>().is_some_and(|c| c.touches.iter().any(|t| t.node == node));
     let meets = match (meets_cloth, meets_body) {
         (true, _) => Meets::Cloth,
         (_, true) => Meets::Body,

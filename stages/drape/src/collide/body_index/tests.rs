@@ -3,7 +3,7 @@
 use super::super::testing::{cube, numbers, sphere};
 use super::*;
 use toile_core::artifact::Vector3;
-use toile_geometry::volume::{Aabb, KDop, Obb, Sphere};
+use toile_geometry::volume::{Aabb, BoundingSphere, KDop, Obb};
 
 fn index<V: BoundingVolume>(body: &Body) -> BodyIndex<V> {
     BodyIndex::new(body, Distances::Asked, &Context::quiet()).unwrap()
@@ -24,7 +24,7 @@ fn hits<V: BoundingVolume>(index: &BodyIndex<V>, from: &[Point3], to: &[Point3])
 #[test]
 fn contacts_are_those_of_brute_force_for_every_reach() {
     let ball = sphere(0.5, 24, 32);
-    let index = index::<Sphere>(&ball);
+    let index = index::<BoundingSphere>(&ball);
     let mut next = numbers(3);
     let at: Vec<Point3> =
         (0..3000).map(|_| Point3::new(next() - 0.5, next() - 0.5, next() - 0.5) * 1.4).collect();

@@ -1,13 +1,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::super::proximity::{edge_edge, vertex_triangle};
-use super::super::testing::{Cloth, both, sheet, soup};
+use super::super::testing::{ClothMesh, both, sheet, soup};
 use super::*;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 use toile_core::artifact::Vector3;
 use toile_geometry::closest::Feature;
-use toile_geometry::volume::{Aabb, KDop, Obb, Sphere};
+use toile_geometry::volume::{Aabb, BoundingSphere, KDop, Obb};
 
 const CARD: ColliderCard =
     ColliderCard { thickness: 1e-3, friction: 0.3, restitution: 0.0, self_collision: true, penalty: None };
@@ -16,7 +16,7 @@ fn scheme<V: BoundingVolume>() -> BvhScheme<V> {
     BvhScheme::new(CARD, None, Distances::Asked, &Context::quiet()).unwrap()
 }
 
-fn contacts(scheme: &dyn Collide, (positions, triangles): &Cloth, reach: f64) -> Vec<SelfContact> {
+fn contacts(scheme: &dyn Collide, (positions, triangles): &ClothMesh, reach: f64) -> Vec<SelfContact> {
     let mut out = Vec::new();
     scheme.self_contacts(positions, triangles, reach, &mut out);
     out
@@ -30,7 +30,7 @@ fn edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 /// Every pair nearer than `reach`, straight from the definition: nodes, distance, closest features.
 type BrutePair = ([u32; 4], f64, Option<BTreeSet<u32>>);
 
-fn brute_pairs((positions, triangles): &Cloth, reach: f64) -> Vec<BrutePair> {
+fn brute_pairs((positions, triangles): &ClothMesh, reach: f64) -> Vec<BrutePair> {
     let at = |i: u32| positions[i as usize].coords;
     let used: BTreeSet<u32> = triangles.iter().flatten().copied().collect();
     let mut pairs = Vec::new();
@@ -63,7 +63,7 @@ fn features(c: &SelfContact) -> BTreeSet<u32> {
     c.vertices.iter().zip(c.weights).filter(|(_, w)| *w != 0.0).map(|(v, _)| *v).collect()
 }
 
-fn check_against_brute_force(cloth: &Cloth, reach: f64) {
+fn check_against_brute_force(cloth: &ClothMesh, reach: f64) {
     let brute = brute_pairs(cloth, reach);
     let found = contacts(&scheme::<Aabb>(), cloth, reach);
     let is_vertex = |c: &&SelfContact| c.weights[0] == 1.0 && c.weights[1] <= 0.0;
@@ -86,7 +86,7 @@ fn check_against_brute_force(cloth: &Cloth, reach: f64) {
     assert_eq!(scheme::<Aabb>().conservative_bounds(&cloth.0, &cloth.1, reach), bounds);
 }
 
-fn check_same(cloth: &Cloth, reach: f64, other: &dyn Collide) {
+fn check_same(cloth: &ClothMesh, reach: f64, other: &dyn Collide) {
     let boxes = scheme::<Aabb>();
     assert_eq!(contacts(other, cloth, reach), contacts(&boxes, cloth, reach));
     let bounds = |s: &dyn Collide| s.conservative_bounds(&cloth.0, &cloth.1, reach);
@@ -105,7 +105,7 @@ proptest! {
     #[test]
     fn all_volumes_agree(seed in 0u64..1 << 32, count in 1u32..120, size in 0.02..0.5, reach in 0.0..0.2) {
         let cloth = soup(seed, count, size);
-        check_same(&cloth, reach, &scheme::<Sphere>());
+        check_same(&cloth, reach, &scheme::<BoundingSphere>());
         check_same(&cloth, reach, &scheme::<Obb>());
         check_same(&cloth, reach, &scheme::<KDop<3>>());
         check_same(&cloth, reach, &scheme::<KDop<7>>());
@@ -154,7 +154,7 @@ fn cloth_with_nothing_near_has_no_contacts() {
     let cloth = sheet(8, |_, _| 0.0);
     assert!(contacts(&scheme::<Aabb>(), &cloth, 0.05).is_empty());
     assert!(contacts(&scheme::<Aabb>(), &(vec![], vec![]), 0.05).is_empty());
-    let one: Cloth = (cloth.0.clone(), vec![cloth.1[0]]);
+    let one: ClothMesh = (cloth.0.clone(), vec![cloth.1[0]]);
     assert!(contacts(&scheme::<Obb>(), &one, 0.05).is_empty());
     assert_eq!(scheme::<Aabb>().conservative_bounds(&one.0, &one.1, 0.05), vec![0.05; one.0.len()]);
 }
@@ -166,7 +166,7 @@ fn bad_triangles_and_numbers_are_left_out() {
     triangles.extend([[0, 0, 20], [1, 2, 99], [u32::MAX; 3]]);
     assert_eq!(contacts(&scheme::<Aabb>(), &(positions.clone(), triangles.clone()), 0.003), clean);
     positions[20] = Point3::new(f64::NAN, f64::INFINITY, 0.0);
-    for scheme in [&scheme::<Sphere>() as &dyn Collide, &scheme::<Obb>(), &scheme::<KDop<13>>()] {
+    for scheme in [&scheme::<BoundingSphere>() as &dyn Collide, &scheme::<Obb>(), &scheme::<KDop<13>>()] {
         let found = contacts(scheme, &(positions.clone(), triangles.clone()), 0.003);
         assert!(
             !found.is_empty() && found.iter().all(|c| c.distance.is_finite() && c.normal.norm().is_finite())

@@ -21,7 +21,7 @@ pub(crate) use rest::{Rests, crossing};
 
 /// To whom and of what is told.
 #[derive(Clone, Copy)]
-pub(crate) struct Words<'a> {
+pub(crate) struct MessageContext<'a> {
     /// Knows which panel a triangle belongs to.
     pub(crate) garment: &'a Garment,
     /// Knows where on the body a place is.
@@ -30,7 +30,7 @@ pub(crate) struct Words<'a> {
     pub(crate) stage: &'a str,
 }
 
-impl Words<'_> {
+impl MessageContext<'_> {
     /// A change of the stage's parameter, as a user types it.
     fn set(&self, parameter: &str, value: impl std::fmt::Display) -> String {
         format!("`--set 'stages.{}.{parameter}={value}'`", self.stage)

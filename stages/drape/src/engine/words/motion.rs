@@ -1,7 +1,7 @@
 //! Why a motion does not end.
 
 use super::rest::open_seam;
-use super::{Words, length, panel, turn_round};
+use super::{MessageContext, length, panel, turn_round};
 use crate::engine::{scene_error, split};
 use toile_cloth::motion::MotionError;
 use toile_core::{ErrorCode, StageError};
@@ -22,7 +22,7 @@ pub(crate) struct Motions {
 /// Softer by this, springs take steps that are twice as long.
 const SOFTER: f64 = 4.0;
 
-impl Words<'_> {
+impl MessageContext<'_> {
     /// An error of a solver that steps in time.
     pub(crate) fn motion(&self, error: &MotionError, can: &Motions) -> StageError {
         let (longest, time_limit) = (can.longest, can.time_limit);

@@ -1,6 +1,6 @@
 //! Faults of a garment's mesh and numbers.
 
-use super::Words;
+use super::MessageContext;
 use crate::engine::cloth_error;
 use toile_cloth::error::ClothError;
 use toile_core::StageError;
@@ -13,7 +13,7 @@ pub(super) const BEYOND_CLOTH: &str = "look at the fabric: its weight, stretch a
 const AGAIN: &str =
     "mesh the piece again with another edge length, or merge points that lie on each other in the file";
 
-impl Words<'_> {
+impl MessageContext<'_> {
     /// A fault of numbers; triangles and points are told by their panel.
     pub(super) fn numbers(&self, error: &ClothError) -> StageError {
         let told = cloth_error(error);

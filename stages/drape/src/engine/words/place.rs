@@ -1,6 +1,6 @@
 //! Where on the body a place is, in words.
 
-use super::Words;
+use super::MessageContext;
 use nalgebra::Vector3;
 use toile_core::artifact::Point3;
 
@@ -10,7 +10,7 @@ const AT: f64 = 0.12;
 /// Nearer than this to the middle, a place is neither left nor right, before nor behind, metres.
 const MIDDLE: f64 = 0.03;
 
-impl Words<'_> {
+impl MessageContext<'_> {
     /// A place: "at the left armpit, 1.27 m above the floor"; its coordinates where there is no
     /// body.
     pub(super) fn place(&self, at: &Vector3<f64>) -> String {

@@ -1,7 +1,7 @@
 //! Why a garment does not come to rest.
 
 use super::numbers::BEYOND_CLOTH;
-use super::{Words, both, length, panel, seam, turn_round};
+use super::{MessageContext, both, length, panel, seam, turn_round};
 use crate::engine::{scene_error, split};
 use toile_cloth::statics::drive::solve::{Equilibrium, StaticsError, Unsolvable};
 use toile_cloth::statics::report::not_at_rest::unrest;
@@ -23,7 +23,7 @@ pub(crate) struct Rests<'a> {
 /// one does not.
 const FINER: (usize, usize) = (3, 2000);
 
-impl Words<'_> {
+impl MessageContext<'_> {
     /// An error of the static solver.
     pub(crate) fn rest(&self, error: &StaticsError, can: &Rests<'_>) -> StageError {
         let finer = || self.set("coarsest", FINER.1.max(FINER.0 * can.coarsest));

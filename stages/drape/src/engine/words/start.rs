@@ -1,13 +1,13 @@
 //! What is wrong with where a garment starts.
 
-use super::{Words, both, length, panel, seam, turn_round};
+use super::{MessageContext, both, length, panel, seam, turn_round};
 use toile_cloth::statics::report::start::StartError;
 use toile_core::{ErrorCode, StageError};
 
 /// What less of it lies in the body is moved out by a solver, metres.
 const MOVED_OUT: f64 = 0.05;
 
-impl Words<'_> {
+impl MessageContext<'_> {
     /// `through` is how this user lets cloth pass through what lies in its way, where that can be
     /// asked for.
     pub(super) fn start(&self, error: &StartError, through: Option<String>) -> StageError {

@@ -2,7 +2,7 @@
 //! in it.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use super::{Motions, Rests, Words};
+use super::{MessageContext, Motions, Rests};
 use crate::collide::{BvhScheme, Distances};
 use nalgebra::Vector3;
 use toile_cloth::contact::past::{Fallen, Start};
@@ -312,7 +312,7 @@ fn numbers() -> Vec<(ClothError, &'static str)> {
 #[test]
 fn every_error_of_the_engine_is_told_in_the_words_of_its_user() {
     let garment = vest(&plain(6000.0, 80.0, 1e-5));
-    let words = Words { garment: &garment, scheme: None, stage: "Drape" };
+    let words = MessageContext { garment: &garment, scheme: None, stage: "Drape" };
     let rests = Rests { reversed: &[], sew_through: false, coarsest: 300, steps: 500, time_limit: 600.0 };
     let can = Motions { longest: ("time_limit", 4.0), closing: 0.5, time_limit: None, stiffest: Some(500.0) };
     check(statics().into_iter().map(|(e, text)| (words.rest(&e, &rests), text)).collect());
@@ -323,7 +323,7 @@ fn every_error_of_the_engine_is_told_in_the_words_of_its_user() {
 #[test]
 fn what_the_engine_says_is_the_detail() {
     let garment = vest(&plain(6000.0, 80.0, 1e-5));
-    let words = Words { garment: &garment, scheme: None, stage: "Drape" };
+    let words = MessageContext { garment: &garment, scheme: None, stage: "Drape" };
     let rests = Rests { reversed: &[], sew_through: true, coarsest: 300, steps: 500, time_limit: 600.0 };
     let load = Load { length: 0.49, weight: 0.8, stiffness: 653.8 };
     let e = words.rest(&StaticsError::Tangled { panels: panels(), pairs: 3, at: AT, load }, &rests);
@@ -344,7 +344,7 @@ fn a_place_on_a_body_is_told_by_its_landmark_or_its_height() {
     let body = toile_fixtures::mannequin("(height: \"172 cm\")").unwrap();
     let card = Capsules::torso().card;
     let scheme = BvhScheme::<Aabb>::new(card, Some(&body), Distances::Asked, &Context::quiet()).unwrap();
-    let words = Words { garment: &garment, scheme: Some(&scheme), stage: "Drape" };
+    let words = MessageContext { garment: &garment, scheme: Some(&scheme), stage: "Drape" };
     let armpit = body.landmarks["armpit_left"].coords;
     let floor = body.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     assert_eq!(
@@ -353,6 +353,6 @@ fn a_place_on_a_body_is_told_by_its_landmark_or_its_height() {
     );
     let before = words.place(&Vector3::new(-0.3, floor + 0.4, 0.4));
     assert_eq!(before, "in front on the right, 0.40 m above the floor");
-    let none = Words { scheme: None, ..words };
+    let none = MessageContext { scheme: None, ..words };
     assert_eq!(none.place(&AT), "at (0.177, 1.270, 0.009) m");
 }

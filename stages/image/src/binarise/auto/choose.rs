@@ -1,10 +1,10 @@
 //! The best of the methods' masks.
 
 use super::super::graph_cut::{Coarse, GraphCut};
-use super::super::small::Small;
-use super::evidence::{Evidence, overlap};
+use super::super::small::SmallPhoto;
+use super::evidence::{MaskEvidence, overlap};
 use super::larger::larger;
-use super::methods::Found;
+use super::methods::MethodMask;
 use super::thin::{with_pairs, without_lone_parts};
 use super::wedge::with_wedges;
 use toile_core::prelude::*;
@@ -18,11 +18,11 @@ const MORE: f64 = 1.15;
 
 /// The mask that is taken, with what speaks for it.
 #[derive(Debug)]
-pub(super) struct Choice {
+pub(super) struct ChosenMask {
     /// The mask at the small size, with the colours of both sides.
     pub coarse: Coarse,
     /// What speaks for it.
-    pub evidence: Evidence,
+    pub evidence: MaskEvidence,
     /// The area of what lies around it, as a multiple of its own, where it may be a print.
     pub larger: Option<f64>,
 }
@@ -30,22 +30,22 @@ pub(super) struct Choice {
 /// The mask with the most confidence, then the most agreement; the first of equals. `None` where no
 /// method found anything.
 pub(super) fn choose(
-    small: &Small,
-    large: &Small,
-    found: &[Found],
+    small: &SmallPhoto,
+    large: &SmallPhoto,
+    found: &[MethodMask],
     cx: &Context,
-) -> Result<Option<Choice>, StageError> {
+) -> Result<Option<ChosenMask>, StageError> {
     let evidence = |i: usize| {
         let others: Vec<&[bool]> =
             found.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, f)| &f.mask[..]).collect();
         // Contours are looked at where pixels are smaller.
-        Evidence {
-            agreement: Evidence::of(small, &found[i].mask, &others).agreement,
+        MaskEvidence {
+            agreement: MaskEvidence::of(small, &found[i].mask, &others).agreement,
             ..at_large(small, large, &found[i].mask)
         }
     };
-    let all: Vec<Evidence> = (0..found.len()).map(evidence).collect();
-    let better = |a: &Evidence, b: &Evidence| {
+    let all: Vec<MaskEvidence> = (0..found.len()).map(evidence).collect();
+    let better = |a: &MaskEvidence, b: &MaskEvidence| {
         let by = a.confidence().total_cmp(&b.confidence());
         by.then(a.agreement.total_cmp(&b.agreement)).is_gt()
     };
@@ -63,12 +63,12 @@ pub(super) fn choose(
         cx.figure("taken off", 100.0 * away / small.lab.len() as f64, "% of the photo");
     }
     let larger = larger(small, &coarse.mask, cut.rim, cx)?;
-    Ok(Some(Choice { coarse, evidence: all[best], larger }))
+    Ok(Some(ChosenMask { coarse, evidence: all[best], larger }))
 }
 
 /// The mask that holds the best one and much more, where evidence speaks for it too: methods agree
 /// about one part of a garment of two colours as well as about all of it.
-fn whole(found: &[Found], all: &[Evidence], best: usize) -> usize {
+fn whole(found: &[MethodMask], all: &[MaskEvidence], best: usize) -> usize {
     let count = |i: usize| found[i].mask.iter().filter(|on| **on).count() as f64;
     let held =
         |i: usize| found[i].mask.iter().zip(&found[best].mask).filter(|(a, b)| **a && **b).count() as f64;
@@ -85,8 +85,8 @@ fn whole(found: &[Found], all: &[Evidence], best: usize) -> usize {
 }
 
 /// The evidence of a mask at a larger size of its photo, without that of other methods.
-fn at_large(small: &Small, large: &Small, mask: &[bool]) -> Evidence {
+fn at_large(small: &SmallPhoto, large: &SmallPhoto, mask: &[bool]) -> MaskEvidence {
     let at = |i: usize| (i / large.w * small.h / large.h) * small.w + i % large.w * small.w / large.w;
     let mask: Vec<bool> = (0..large.w * large.h).map(|i| mask[at(i)]).collect();
-    Evidence::of(large, &mask, &[])
+    MaskEvidence::of(large, &mask, &[])
 }

@@ -10,7 +10,7 @@
 
 use super::super::background::{in_middle, rim_width};
 use super::super::otsu::otsu;
-use super::super::small::{Lab, Small};
+use super::super::small::{Lab, SmallPhoto};
 use nalgebra::Matrix3;
 
 /// Added to the scatter, squared Lab units: noise of a camera.
@@ -19,7 +19,7 @@ const NOISE: f64 = 4.0;
 const LEVELS: f64 = 100.0;
 
 /// The garment's side of the split; `None` where rim or middle are empty or do not differ.
-pub(super) fn colour_split(small: &Small, rim: f64) -> Option<Vec<bool>> {
+pub(super) fn colour_split(small: &SmallPhoto, rim: f64) -> Option<Vec<bool>> {
     let at_rim: Vec<bool> = (0..small.lab.len()).map(|i| small.depth(i) < rim_width(small, rim)).collect();
     let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
     let (ground, garment) = (small.colours(&at_rim), small.colours(&middle));

@@ -7,7 +7,7 @@
 //!
 //! Cost: eight looks a pixel of the contour.
 
-use super::super::small::{Lab, Small};
+use super::super::small::{Lab, SmallPhoto};
 
 /// How far in and out colours are taken, small pixels.
 const REACH: [f64; 3] = [1.5, 2.5, 3.5];
@@ -24,21 +24,21 @@ const BESIDE: f64 = 0.035;
 
 /// The share of a mask's contour that lies on an edge of the photo, 0 to 1; the mask is of the
 /// small picture's size. Where the contour runs along the frame it is not looked at.
-pub(super) fn support(small: &Small, mask: &[bool]) -> f64 {
+pub(super) fn support(small: &SmallPhoto, mask: &[bool]) -> f64 {
     let (bare, total) = bare(small, mask);
     1.0 - bare.len() as f64 / total.max(1) as f64
 }
 
 /// How much of a mask's contour lies beside the frame and not on an edge of the photo, as a share
 /// of the shorter side: there the garment goes on past the frame.
-pub(super) fn bare_along_frame(small: &Small, mask: &[bool]) -> f64 {
+pub(super) fn bare_along_frame(small: &SmallPhoto, mask: &[bool]) -> f64 {
     let side = small.w.min(small.h) as f64;
     let beside = bare(small, mask).0.into_iter().filter(|i| (small.depth(*i) as f64) < BESIDE * side);
     beside.count() as f64 / side
 }
 
 /// The contour's pixels that lie on no edge of the photo, and how many it has in all.
-fn bare(small: &Small, mask: &[bool]) -> (Vec<usize>, usize) {
+fn bare(small: &SmallPhoto, mask: &[bool]) -> (Vec<usize>, usize) {
     let (w, h) = (small.w as isize, small.h as isize);
     let on = |x: isize, y: isize| x >= 0 && y >= 0 && x < w && y < h && mask[(y * w + x) as usize];
     let is_rim = |x: isize, y: isize| {

@@ -1,9 +1,9 @@
 //! The words and the picture of a doubt.
 
 use super::super::marked::marked;
-use super::super::small::Small;
-use super::choose::Choice;
-use super::methods::Found;
+use super::super::small::SmallPhoto;
+use super::choose::ChosenMask;
+use super::methods::MethodMask;
 use image::GrayImage;
 use rayon::prelude::*;
 use toile_core::prelude::*;
@@ -14,7 +14,7 @@ const RED: [f64; 3] = [255.0, 0.0, 0.0];
 const COVER: f64 = 0.6;
 
 /// The refusal of a mask that leaves doubt: what was seen, and one thing to try.
-pub(super) fn refuse(file: &str, choice: &Choice, confidence: f64, stage: &str) -> StageError {
+pub(super) fn refuse(file: &str, choice: &ChosenMask, confidence: f64, stage: &str) -> StageError {
     let (seen, advice) = words(choice, file);
     let take = format!("--set 'stages.{stage}.confidence={}'", (confidence * 100.0).floor() / 100.0);
     StageError::invalid(seen)
@@ -22,7 +22,7 @@ pub(super) fn refuse(file: &str, choice: &Choice, confidence: f64, stage: &str) 
 }
 
 /// What is least sure, and what would help.
-fn words(choice: &Choice, file: &str) -> (String, &'static str) {
+fn words(choice: &ChosenMask, file: &str) -> (String, &'static str) {
     if let Some(times) = choice.larger {
         let seen = format!(
             "what stands out in \"{file}\" may be a print: an outline around it holds {times:.1} times its area"
@@ -50,7 +50,7 @@ fn words(choice: &Choice, file: &str) -> (String, &'static str) {
 }
 
 /// The photo with the mask's outline, and in red what the methods disagree about.
-pub(super) fn doubtful(photo: &Photo, mask: &GrayImage, small: &Small, found: &[Found]) -> Photo {
+pub(super) fn doubtful(photo: &Photo, mask: &GrayImage, small: &SmallPhoto, found: &[MethodMask]) -> Photo {
     let doubt: Vec<f64> = (0..small.lab.len())
         .map(|i| found.iter().filter(|f| f.mask[i]).count() as f64 / found.len() as f64)
         .map(|garment| 4.0 * garment * (1.0 - garment))

@@ -8,7 +8,7 @@
 //! contour follows edges but for a stretch in shade. The bounds were chosen by looking at 23 photos
 //! with masks drawn by hand (docs/log/README.md#masks).
 
-use super::super::small::Small;
+use super::super::small::SmallPhoto;
 use super::contour::support;
 use super::symmetry::symmetry;
 
@@ -24,7 +24,7 @@ const ON_EDGES: [f64; 2] = [0.7, 0.9];
 
 /// What speaks for a mask.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Evidence {
+pub(super) struct MaskEvidence {
     /// Weighted intersection over union with the two methods that agree best, 0 to 1.
     pub agreement: f64,
     /// Intersection over union with its mirror image, 0 to 1.
@@ -33,14 +33,14 @@ pub(super) struct Evidence {
     pub support: f64,
 }
 
-impl Evidence {
+impl MaskEvidence {
     /// The evidence for `mask` of `small`'s size, given what other methods found at the same size.
-    pub(super) fn of(small: &Small, mask: &[bool], others: &[&[bool]]) -> Evidence {
+    pub(super) fn of(small: &SmallPhoto, mask: &[bool], others: &[&[bool]]) -> MaskEvidence {
         let mut agree: Vec<f64> = others.iter().map(|o| overlap(mask, o)).collect();
         agree.sort_by(|a, b| b.total_cmp(a));
         agree.resize(2, 0.0);
         let [first, second] = [agree[0], agree[1]];
-        Evidence {
+        MaskEvidence {
             agreement: FIRST * first + (1.0 - FIRST) * second,
             symmetry: symmetry(mask, small.w).map_or(0.0, |s| s.share),
             support: support(small, mask),

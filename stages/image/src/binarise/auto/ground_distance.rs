@@ -10,13 +10,13 @@
 use super::super::background::{LEAST_MODE, rim_width};
 use super::super::mixture::Mixture;
 use super::super::otsu::otsu;
-use super::super::small::Small;
+use super::super::small::SmallPhoto;
 
 /// What is further than this is as good as infinitely far, standard deviations.
 const FAR: f64 = 12.0;
 
 /// What is far from the rim's colours; `None` where all is alike.
-pub(super) fn ground_distance(small: &Small, modes: usize, rim: f64) -> Option<Vec<bool>> {
+pub(super) fn ground_distance(small: &SmallPhoto, modes: usize, rim: f64) -> Option<Vec<bool>> {
     let at_rim: Vec<bool> = (0..small.lab.len()).map(|i| small.depth(i) < rim_width(small, rim)).collect();
     let ground = Mixture::fit(&small.colours(&at_rim), modes, LEAST_MODE)?;
     let level = |i: usize| (255.0 * (ground.distance(&small.lab[i]) / FAR).min(1.0)) as u8;

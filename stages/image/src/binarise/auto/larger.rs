@@ -9,7 +9,7 @@
 //! these seldom go all around.
 
 use super::super::morphology::dilate;
-use super::super::small::Small;
+use super::super::small::SmallPhoto;
 use super::contour::support;
 use super::grid::{bits, picture};
 use super::walker::walk;
@@ -24,7 +24,7 @@ const LARGER: f64 = 1.3;
 
 /// The area of what lies around the mask, as a multiple of the mask's; `None` where nothing does.
 pub(super) fn larger(
-    small: &Small,
+    small: &SmallPhoto,
     mask: &[bool],
     rim: f64,
     cx: &Context,

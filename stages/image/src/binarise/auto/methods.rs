@@ -2,7 +2,7 @@
 
 use super::super::background::{SHADOW, background, clean, in_middle};
 use super::super::graph_cut::{GraphCut, start};
-use super::super::small::Small;
+use super::super::small::SmallPhoto;
 use super::colour_split::colour_split;
 use super::ground_distance::ground_distance;
 use super::walker::walk;
@@ -10,7 +10,7 @@ use toile_core::prelude::*;
 
 /// A method's mask.
 #[derive(Debug, Clone)]
-pub(super) struct Found {
+pub(super) struct MethodMask {
     /// The method, as a user would name it.
     pub name: &'static str,
     /// The mask, a small pixel a value.
@@ -20,14 +20,14 @@ pub(super) struct Found {
 /// What each method finds; a method that finds nothing is left out.
 /// `given` is the mask of an earlier stage, brought to the small size.
 pub(super) fn methods(
-    small: &Small,
+    small: &SmallPhoto,
     given: Option<Vec<bool>>,
     cx: &Context,
-) -> Result<Vec<Found>, StageError> {
+) -> Result<Vec<MethodMask>, StageError> {
     let cut = GraphCut::default();
     let modes = cut.modes as usize;
     let mut found = Vec::new();
-    let mut add = |name, mask: Option<Vec<bool>>| found.extend(mask.map(|mask| Found { name, mask }));
+    let mut add = |name, mask: Option<Vec<bool>>| found.extend(mask.map(|mask| MethodMask { name, mask }));
     let first = cut.settle(small.clone(), start(small, modes, cut.rim), cx)?;
     add("graph cut", first.map(|c| c.mask));
     add("background", background(small, modes, cut.rim, SHADOW));

@@ -38,14 +38,14 @@ mod walker;
 mod wedge;
 
 use super::beside::{Thing, at_size, tell_beside};
-use super::finish::{Finish, cut_by_frame, fill_holes, mask_of, no_garment};
+use super::finish::{CleanUp, cut_by_frame, fill_holes, mask_of, no_garment};
 use super::graph_cut::GraphCut;
 use super::marked::marked;
-use super::marks::{self, Place, of_photo};
+use super::marks::{self, PhotoPlace, of_photo};
 use super::refine::refine;
 use super::regions::Regions;
-use super::small::Small;
-use choose::{Choice, choose};
+use super::small::SmallPhoto;
+use choose::{ChosenMask, choose};
 use contour::bare_along_frame;
 use doubt::{doubtful, refuse};
 use grid::{bits, picture};
@@ -89,10 +89,10 @@ pub struct Auto {
     /// Places on the garment, by photo, as shares of width and height from the left upper corner:
     /// which of several things is meant.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub garment: BTreeMap<String, Vec<Place>>,
+    pub garment: BTreeMap<String, Vec<PhotoPlace>>,
     /// Two opposite corners of a rectangle that holds all of the garment, by photo, likewise.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub rect: BTreeMap<String, (Place, Place)>,
+    pub rect: BTreeMap<String, (PhotoPlace, PhotoPlace)>,
 }
 
 /// What is left around a rectangle that a user draws, as a share of its sides.
@@ -103,7 +103,7 @@ impl Auto {
     /// The mask of the garment.
     pub fn run(&self, photo: &Photo, given: Option<&Mask>, cx: &Context) -> Result<Mask, StageError> {
         // How far it may touch the frame is told here, with what goes on past it.
-        let settings = Finish { open: 0, close: 0, holes: self.holes, touch: f64::INFINITY, next: NEXT };
+        let settings = CleanUp { open: 0, close: 0, holes: self.holes, touch: f64::INFINITY, next: NEXT };
         let mask = mask_of(photo, settings, cx, || self.one_of_all(photo, given, cx))?;
         tell_beside(photo, &mask, None, || things(photo), cx);
         self.holds_the_places(photo, &mask, cx).map(|()| mask)
@@ -165,7 +165,7 @@ impl Auto {
         let (w, h) = mask.pixels.dimensions();
         let at = |share: f64, n: u32| ((share * f64::from(n)) as u32).min(n.saturating_sub(1));
         let places = of_photo(&self.garment, photo, cx).map_or(&[][..], |places| places);
-        let beside = |(x, y): &&Place| mask.pixels.get_pixel(at(*x, w), at(*y, h)).0[0] == 0;
+        let beside = |(x, y): &&PhotoPlace| mask.pixels.get_pixel(at(*x, w), at(*y, h)).0[0] == 0;
         places.iter().find(beside).map_or(Ok(()), |place| Err(not_held(photo, *place, cx)))
     }
 
@@ -180,8 +180,8 @@ impl Auto {
 
     /// The mask at the photo's size, before it is finished.
     fn mask(&self, photo: &Photo, given: Option<&Mask>, cx: &Context) -> Result<GrayImage, StageError> {
-        let small = Small::of(photo, self.size / 2);
-        let large = Small::of(photo, self.size);
+        let small = SmallPhoto::of(photo, self.size / 2);
+        let large = SmallPhoto::of(photo, self.size);
         cx.check()?;
         let given =
             given.map(|mask| same_size(mask, photo).map(|()| at_size(&mask.pixels, &small))).transpose()?;
@@ -190,7 +190,7 @@ impl Auto {
         let Some(choice) = choose(&small, &large, &found, cx)? else {
             return Err(no_garment(photo, "no method parts it from the ground along the frame", NEXT));
         };
-        let Choice { coarse, evidence, larger, .. } = &choice;
+        let ChosenMask { coarse, evidence, larger, .. } = &choice;
         let confidence = if larger.is_some() { 0.0 } else { evidence.confidence() };
         cx.figure("confidence", confidence, "");
         cx.figure("agreement", evidence.agreement, "");
@@ -233,7 +233,7 @@ impl Auto {
 }
 
 /// The refusal of a mark that lies on no thing.
-fn not_held(photo: &Photo, (x, y): Place, cx: &Context) -> StageError {
+fn not_held(photo: &Photo, (x, y): PhotoPlace, cx: &Context) -> StageError {
     let set = format!("--set 'stages.{}.rect={{\"{}\": ((0.1, 0.1), (0.5, 0.9))}}'", cx.stage(), cx.entry());
     StageError::invalid(format!(
         "what was found in \"{}\" does not hold the place ({x}, {y}) that is marked",
@@ -270,7 +270,7 @@ fn opened(mut mask: GrayImage) -> GrayImage {
 /// # Errors
 /// Cancelled.
 pub fn candidates(photo: &Photo, cx: &Context) -> Result<Vec<(&'static str, GrayImage)>, StageError> {
-    let small = Small::of(photo, 200);
+    let small = SmallPhoto::of(photo, 200);
     let found = methods(&small, None, cx)?;
     Ok(found.into_iter().map(|f| (f.name, picture(&f.mask, small.w, small.h))).collect())
 }

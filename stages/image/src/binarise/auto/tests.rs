@@ -82,7 +82,7 @@ fn a_print_that_all_methods_take_is_seen_by_the_outline_around_it() {
         (_, true) => [240; 3],
         _ => [214; 3],
     });
-    let small = Small::of(&photo, 200);
+    let small = SmallPhoto::of(&photo, 200);
     let at = |f: fn(f64, f64) -> bool| -> Vec<bool> {
         let place = |i: usize| ((i % small.w) as f64 / small.w as f64, (i / small.w) as f64 / small.h as f64);
         (0..small.lab.len()).map(|i| f(place(i).0, place(i).1)).collect()

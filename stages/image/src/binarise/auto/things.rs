@@ -12,7 +12,7 @@ use super::super::finish::fill_holes;
 use super::super::graph_cut::GraphCut;
 use super::super::morphology::{close, open};
 use super::super::regions::Regions;
-use super::super::small::Small;
+use super::super::small::SmallPhoto;
 use super::contour::support;
 use super::grid::{bits, picture};
 use super::ground_distance::ground_distance;
@@ -26,7 +26,7 @@ const OUTLINE: f64 = 0.8;
 /// The things of a photo, from the largest to the smallest; those that are small beside the largest
 /// are left out.
 pub(super) fn things(photo: &Photo) -> Vec<Thing> {
-    let small = Small::of(photo, SIDE);
+    let small = SmallPhoto::of(photo, SIDE);
     let cut = GraphCut::default();
     let Some(raw) = ground_distance(&small, cut.modes as usize, cut.rim) else { return Vec::new() };
     let radius = (CLEAN * small.w.max(small.h) as f64 / 400.0).round() as u32;

@@ -11,8 +11,8 @@
 //! ground the edges of the pattern hold the walker up, and the boundary lies at any of them.
 
 use super::super::background::rim_width;
-use super::super::small::Small;
-use crate::grid::{End, Grid};
+use super::super::small::SmallPhoto;
+use crate::grid::{Grid, StoppingRule};
 use toile_core::prelude::*;
 
 /// How much a step of colour holds the walker up, against the mean square of all steps.
@@ -20,10 +20,15 @@ const BETA: f64 = 1.0;
 /// What passes across the largest step: keeps every pixel in reach.
 const LEAST: f64 = 1e-3;
 /// When the rounds end.
-const END: End = End { residual: 1e-3, rounds: 400 };
+const END: StoppingRule = StoppingRule { residual: 1e-3, rounds: 400 };
 
 /// The chance of each pixel to be garment, 0 to 1; `inside` is known to be garment, the rim ground.
-pub(super) fn walk(small: &Small, inside: &[bool], rim: f64, cx: &Context) -> Result<Vec<f64>, StageError> {
+pub(super) fn walk(
+    small: &SmallPhoto,
+    inside: &[bool],
+    rim: f64,
+    cx: &Context,
+) -> Result<Vec<f64>, StageError> {
     let (w, h) = (small.w, small.h);
     let n = w * h;
     let rim = rim_width(small, rim);
@@ -40,7 +45,7 @@ pub(super) fn walk(small: &Small, inside: &[bool], rim: f64, cx: &Context) -> Re
 
 /// How readily a walker passes to the right and down; zero past the frame. Steps within what is
 /// known to be garment do not count in the mean, so that a print's edges do not hide the cloth's.
-fn weights(small: &Small, inside: &[bool]) -> (Vec<f64>, Vec<f64>) {
+fn weights(small: &SmallPhoto, inside: &[bool]) -> (Vec<f64>, Vec<f64>) {
     let (w, n) = (small.w, small.lab.len());
     let step = |i: usize, j: usize| (small.lab[i] - small.lab[j]).norm_squared();
     let pairs = |next: usize, is_last: &dyn Fn(usize) -> bool| -> Vec<f64> {

@@ -50,12 +50,12 @@ pub(in crate::flat) struct Mended {
     /// For each triangle its number in the file.
     pub(in crate::flat) numbers: Vec<u32>,
     /// What was done.
-    pub(in crate::flat) repairs: Repairs,
+    pub(in crate::flat) repairs: GarmentRepairs,
 }
 
 /// What was mended, in numbers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(in crate::flat) struct Repairs {
+pub(in crate::flat) struct GarmentRepairs {
     /// Vertices that were joined to others at their places.
     pub(in crate::flat) joined: usize,
     /// Triangles without area.
@@ -68,7 +68,7 @@ pub(in crate::flat) struct Repairs {
     pub(in crate::flat) turned: usize,
 }
 
-impl Repairs {
+impl GarmentRepairs {
     /// Damage in words, none where there was none; joined vertices are no damage, since most
     /// programs split them along seams.
     pub(in crate::flat) fn words(&self) -> Option<String> {
@@ -132,7 +132,7 @@ impl RawMesh {
         let mut used = vec![false; first.len()];
         self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         let joined = (0..first.len()).filter(|&v| used[v] && first[v] as usize != v).count();
-        let mut repairs = Repairs { joined, ..Repairs::default() };
+        let mut repairs = GarmentRepairs { joined, ..GarmentRepairs::default() };
         let own = std::mem::take(&mut self.triangles);
         let welded: Vec<[u32; 3]> = own.iter().map(|t| t.map(|v| first[v as usize])).collect();
         let kept = self.kept(&welded, &mut repairs);
@@ -149,7 +149,7 @@ impl RawMesh {
     }
 
     /// Triangles with area, the first of those that name the same vertices.
-    fn kept(&self, welded: &[[u32; 3]], repairs: &mut Repairs) -> Vec<u32> {
+    fn kept(&self, welded: &[[u32; 3]], repairs: &mut GarmentRepairs) -> Vec<u32> {
         let mut seen = BTreeSet::new();
         let mut kept = Vec::with_capacity(welded.len());
         for (t, corners) in welded.iter().enumerate() {

@@ -21,18 +21,18 @@ const FARTHEST: f64 = 1e7;
 const OURS: &str = "toile ";
 
 /// What is wrong with a file, and what to do about it.
-struct Fault {
+struct FileFault {
     what: String,
     remedy: &'static str,
 }
 
-impl From<String> for Fault {
+impl From<String> for FileFault {
     fn from(what: String) -> Self {
         Self { what, remedy: "write it again as one .glb file with its buffers in it, or as OBJ" }
     }
 }
 
-impl From<gltf::Error> for Fault {
+impl From<gltf::Error> for FileFault {
     fn from(e: gltf::Error) -> Self {
         format!("it is no sound GLB ({e})").into()
     }
@@ -40,17 +40,17 @@ impl From<gltf::Error> for Fault {
 
 /// The mesh of a file's bytes, in its own unit and axes.
 pub(in crate::flat) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> {
-    read(bytes).map_err(|Fault { what, remedy }| {
+    read(bytes).map_err(|FileFault { what, remedy }| {
         StageError::new(ErrorCode::PatternLoading, format!("\"{file}\": {what}")).hint(remedy).at("file")
     })
 }
 
-fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
+fn read(bytes: &[u8]) -> Result<RawMesh, FileFault> {
     let glb = gltf::Glb::from_slice(bytes)?;
-    let no_json = |e: serde_json::Error| Fault::from(format!("it is no sound GLB (its JSON: {e})"));
+    let no_json = |e: serde_json::Error| FileFault::from(format!("it is no sound GLB (its JSON: {e})"));
     let mut root: Value = serde_json::from_slice(&glb.json).map_err(no_json)?;
     if let Some((what, remedy)) = unread(&root) {
-        return Err(Fault { what, remedy });
+        return Err(FileFault { what, remedy });
     }
     let generator = root.pointer("/asset/generator").and_then(Value::as_str).unwrap_or_default();
     let is_ours = generator.starts_with(OURS);
@@ -59,7 +59,7 @@ fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
     names_what_it_holds(&root)?;
     let document = gltf::Document::from_json(root)?;
     let raw = RawMesh { is_ours, has_own_vertices: true, ..RawMesh::default() };
-    let mut reader = Reader { blob: glb.bin.as_deref(), raw, bare: 0 };
+    let mut reader = GlbReader { blob: glb.bin.as_deref(), raw, bare: 0 };
     reader.raw.material_names = document
         .materials()
         .map(|m| m.name().unwrap_or_default().to_owned())
@@ -76,7 +76,7 @@ fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
             (points, 0) => format!("it holds {points} points and no triangles"),
             (_, lines) => format!("it holds {lines} lines and no triangles"),
         };
-        return Err(Fault { what, remedy: "export the garment as a mesh with faces" });
+        return Err(FileFault { what, remedy: "export the garment as a mesh with faces" });
     }
     Ok(reader.raw)
 }
@@ -91,14 +91,14 @@ fn names_what_it_holds(root: &gltf::json::Root) -> Result<(), String> {
     }
 }
 
-struct Reader<'a> {
+struct GlbReader<'a> {
     blob: Option<&'a [u8]>,
     raw: RawMesh,
     /// Vertices of primitives that are points.
     bare: usize,
 }
 
-impl Reader<'_> {
+impl GlbReader<'_> {
     fn node(&mut self, node: &gltf::Node<'_>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
         if depth > DEEPEST {
             return Err(format!("its nodes are nested deeper than {DEEPEST}"));

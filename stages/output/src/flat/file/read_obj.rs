@@ -3,7 +3,7 @@
 use super::raw::{NO_POINT, RawMesh};
 use toile_core::prelude::*;
 use toile_geometry::obj::OBJ_HINT;
-use toile_geometry::obj::{Marks, ObjError, other_format, parse_marked, without_faces};
+use toile_geometry::obj::{FaceMarks, ObjError, other_format, parse_marked, without_faces};
 
 /// How the OBJ files of this program begin.
 const OURS: &[u8] = b"# metres, Y up\nmtllib ";
@@ -22,7 +22,7 @@ pub(in crate::flat) fn read_obj(bytes: &[u8], file: &str) -> Result<RawMesh, Sta
         }
         _ => bad(e.to_string()).hint(OBJ_HINT),
     })?;
-    let point = |c: u32| if c == Marks::NONE { NO_POINT } else { c };
+    let point = |c: u32| if c == FaceMarks::NONE { NO_POINT } else { c };
     Ok(RawMesh {
         positions: mesh.vertices.into_iter().map(Point3::from).collect(),
         triangles: mesh.triangles,

@@ -1,6 +1,6 @@
 //! Which edges of which panels are finished, and how.
 
-use super::super::finish::{Finish, Kind};
+use super::super::finish::{EdgeFinish, FinishKind};
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 
@@ -16,8 +16,8 @@ pub(super) fn finishes(
     garment: &Garment,
     panels: Option<&Set<Panel>>,
     cx: &Context,
-) -> Result<Vec<Vec<Finish>>, StageError> {
-    let wanted: Vec<(Kind, &String, f64)> = [(Kind::Rib, ribs), (Kind::Stitches, stitches)]
+) -> Result<Vec<Vec<EdgeFinish>>, StageError> {
+    let wanted: Vec<(FinishKind, &String, f64)> = [(FinishKind::Rib, ribs), (FinishKind::Stitches, stitches)]
         .into_iter()
         .flat_map(|(kind, widths)| widths.iter().map(move |(name, width)| (kind, name, width.metres())))
         .collect();
@@ -43,7 +43,7 @@ pub(super) fn finishes(
             for (kind, name, width) in own {
                 found.insert(*name);
                 let line = edge.vertices.iter().map(|v| flat.positions[*v as usize]).collect();
-                of_panel.push(Finish { kind: *kind, width: *width, line });
+                of_panel.push(EdgeFinish { kind: *kind, width: *width, line });
             }
         }
     }
@@ -66,19 +66,19 @@ pub(super) fn lacking(
         || outlines.iter().flat_map(|(panel, o)| o.edges.iter().map(move |e| (*panel, e.name.as_str())));
     let has = |name: &str| edges().any(|(panel, edge)| edge == name || format!("{panel}.{edge}") == name);
     let names: BTreeSet<&str> = edges().map(|(_, edge)| edge).collect();
-    let wanted = [(Kind::Rib, ribs), (Kind::Stitches, stitches)].into_iter();
+    let wanted = [(FinishKind::Rib, ribs), (FinishKind::Stitches, stitches)].into_iter();
     let wanted = wanted.flat_map(|(kind, widths)| widths.keys().map(move |name| (kind, name)));
     wanted.filter(|(_, name)| !has(name)).map(|(kind, name)| no_edge(kind, name, &names)).collect()
 }
 
-fn field(kind: Kind) -> &'static str {
+fn field(kind: FinishKind) -> &'static str {
     match kind {
-        Kind::Rib => "ribs",
-        Kind::Stitches => "stitches",
+        FinishKind::Rib => "ribs",
+        FinishKind::Stitches => "stitches",
     }
 }
 
-fn no_edge(kind: Kind, name: &str, edges: &BTreeSet<&str>) -> StageError {
+fn no_edge(kind: FinishKind, name: &str, edges: &BTreeSet<&str>) -> StageError {
     let names = edges.iter().copied().collect::<Vec<_>>().join(", ");
     StageError::invalid(format!("no panel has an edge \"{name}\" to finish"))
         .hint(format!("the edges are {names}; a panel's own is `panel.edge`"))

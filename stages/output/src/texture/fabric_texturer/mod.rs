@@ -10,8 +10,8 @@ mod tests;
 
 use self::edges::{finishes, lacking};
 use super::edge::add_edges;
-use super::finish::{Finish, MOST_PX, Sheet};
-use super::weave::{Cloth, Colour, Tile, tile};
+use super::finish::{EdgeFinish, MOST_PX, PanelPicture};
+use super::weave::{ClothKind, Colour, Tile, tile};
 use super::{BodyShown, variants};
 use crate::render::LINEAR;
 use crate::render::parts;
@@ -196,7 +196,7 @@ impl FabricTexturer {
         dress: &Dress<'_>,
         colour: Option<&str>,
         cx: &Context,
-    ) -> Result<Pictures, StageError> {
+    ) -> Result<ClothPictures, StageError> {
         let tiles: Vec<Tile> =
             dress.kinds.iter().map(|k| self.tile(*k, colour)).collect::<Result<_, StageError>>()?;
         let mut sheets = Vec::new();
@@ -210,13 +210,13 @@ impl FabricTexturer {
             let kind = dress.kind_of(self.shows(&panel.fabric.name));
             let swatch = tiles[kind].swatch(longest(flat) / MOST_PX);
             let rib = self.cloth(dress.kinds[kind], colour)?.first();
-            sheets.push(Some(Sheet::new(flat, &swatch, finishes, rib)));
+            sheets.push(Some(PanelPicture::new(flat, &swatch, finishes, rib)));
         }
-        Ok(Pictures { tiles, sheets })
+        Ok(ClothPictures { tiles, sheets })
     }
 
     /// The panels in their cloth: its pictures, then their normal maps where they are asked for.
-    fn dressed(&self, dress: &Dress<'_>, pictures: Pictures, cx: &Context) -> Result<Model, StageError> {
+    fn dressed(&self, dress: &Dress<'_>, pictures: ClothPictures, cx: &Context) -> Result<Model, StageError> {
         let garment = dress.garment;
         let mut model = Model::default();
         let normals = garment.vertex_normals();
@@ -249,7 +249,7 @@ impl FabricTexturer {
     }
 
     /// Gives a model its pictures.
-    fn add_textures(&self, model: &mut Model, dress: &Dress<'_>, pictures: Pictures) {
+    fn add_textures(&self, model: &mut Model, dress: &Dress<'_>, pictures: ClothPictures) {
         let mut reliefs = Vec::new();
         let mut add = |name: String, pixels, map: &dyn Fn(f64) -> image::RgbImage, repeats| {
             if self.detail == FabricDetail::Weave {
@@ -315,18 +315,18 @@ impl FabricTexturer {
         }
     }
 
-    fn cloth(&self, shows: FabricTexture, colour: Option<&str>) -> Result<Cloth, StageError> {
+    fn cloth(&self, shows: FabricTexture, colour: Option<&str>) -> Result<ClothKind, StageError> {
         let standard = if shows == FabricTexture::Denim { INDIGO } else { NATURAL };
         let colour = parse(colour.unwrap_or(standard))?;
         let second = parse(self.second.as_deref().unwrap_or(WHITE))?;
         Ok(match shows {
-            FabricTexture::Auto | FabricTexture::Plain => Cloth::Plain(colour),
-            FabricTexture::Twill => Cloth::Twill(colour),
-            FabricTexture::Denim => Cloth::Denim { warp: colour, weft: second },
-            FabricTexture::Rib => Cloth::Rib(colour),
-            FabricTexture::Jersey => Cloth::Jersey(colour),
-            FabricTexture::Check => Cloth::Check { first: colour, second },
-            FabricTexture::Stripe => Cloth::Stripe { first: colour, second },
+            FabricTexture::Auto | FabricTexture::Plain => ClothKind::Plain(colour),
+            FabricTexture::Twill => ClothKind::Twill(colour),
+            FabricTexture::Denim => ClothKind::Denim { warp: colour, weft: second },
+            FabricTexture::Rib => ClothKind::Rib(colour),
+            FabricTexture::Jersey => ClothKind::Jersey(colour),
+            FabricTexture::Check => ClothKind::Check { first: colour, second },
+            FabricTexture::Stripe => ClothKind::Stripe { first: colour, second },
         })
     }
 }
@@ -335,7 +335,7 @@ impl FabricTexturer {
 struct Dress<'a> {
     garment: &'a Garment,
     kinds: &'a [FabricTexture],
-    finishes: &'a [Vec<Finish>],
+    finishes: &'a [Vec<EdgeFinish>],
 }
 
 impl Dress<'_> {
@@ -345,9 +345,9 @@ impl Dress<'_> {
 }
 
 /// A picture of each kind of cloth, and of each panel that has one of its own.
-struct Pictures {
+struct ClothPictures {
     tiles: Vec<Tile>,
-    sheets: Vec<Option<Sheet>>,
+    sheets: Vec<Option<PanelPicture>>,
 }
 
 /// The longer side of the box around a flat panel, metres.

@@ -9,16 +9,16 @@ use toile_core::artifact::{Model, Point3};
 const STEPS: f64 = i16::MAX as f64;
 
 /// A cube around a model.
-pub(super) struct Grid {
+pub(super) struct ModelCube {
     /// Metres.
     pub(super) centre: [f64; 3],
     /// Half of its side, metres; never 0.
     pub(super) half: f64,
 }
 
-impl Grid {
+impl ModelCube {
     /// The smallest cube around all vertices.
-    pub(super) fn around(model: &Model) -> Grid {
+    pub(super) fn around(model: &Model) -> ModelCube {
         let mut points = model.meshes.iter().flat_map(|m| &m.positions);
         let first = points.next().copied().unwrap_or_else(Point3::origin);
         let (lo, hi) = points.fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)));
@@ -26,7 +26,7 @@ impl Grid {
         // What the file names is a 32-bit float: the cube must hold all vertices with it.
         let half = if half > 0.0 { f64::from((half * (1.0 + 1e-6)) as f32) } else { 1.0 };
         let centre = [0, 1, 2].map(|k| f64::from(((lo[k] + hi[k]) / 2.0) as f32));
-        Grid { centre, half }
+        ModelCube { centre, half }
     }
 
     /// The nearest place of the grid.

@@ -1,13 +1,13 @@
 //! Meshes of a GLB file.
 
 use super::buffer::Buffer;
-use super::grid::Grid;
+use super::grid::ModelCube;
 use crate::render::tangents::tangents;
 use serde_json::{Value, json};
 use toile_core::artifact::{Mesh, Model, Vector3};
 
 /// Mesh `index` of the model; on a grid its positions, normals and tangents are whole numbers.
-pub(super) fn mesh(model: &Model, index: usize, grid: Option<&Grid>, buffer: &mut Buffer) -> Value {
+pub(super) fn mesh(model: &Model, index: usize, grid: Option<&ModelCube>, buffer: &mut Buffer) -> Value {
     let m = &model.meshes[index];
     let mut attributes = match grid {
         None => as_floats(m, buffer),
@@ -38,7 +38,7 @@ fn as_floats(m: &Mesh, buffer: &mut Buffer) -> Value {
     })
 }
 
-fn on_grid(m: &Mesh, grid: &Grid, buffer: &mut Buffer) -> Value {
+fn on_grid(m: &Mesh, grid: &ModelCube, buffer: &mut Buffer) -> Value {
     let positions = m.positions.iter().map(|p| grid.place(p));
     let normals = m.normals.iter().map(|n| small([n.x, n.y, n.z]));
     json!({
@@ -58,7 +58,7 @@ fn has_normal_map(model: &Model, index: usize) -> bool {
     looks.chain([model.meshes[index].material]).any(|m| model.materials[m].normal_texture.is_some())
 }
 
-fn tangent_accessor(m: &Mesh, grid: Option<&Grid>, buffer: &mut Buffer) -> usize {
+fn tangent_accessor(m: &Mesh, grid: Option<&ModelCube>, buffer: &mut Buffer) -> usize {
     let row = |along: Vector3, sign: f64| [along.x, along.y, along.z, sign];
     let rows = tangents(m).into_iter().map(|t| row(t.along, t.sign));
     match grid {

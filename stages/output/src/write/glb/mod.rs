@@ -22,7 +22,7 @@ use super::sides::with_wrong_sides;
 use super::texture_file::TextureFormat;
 use crate::file_names::check_name;
 use buffer::Buffer;
-use grid::Grid;
+use grid::ModelCube;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use toile_core::artifact::{Artifact, Digester};
@@ -73,14 +73,14 @@ impl Glb {
         check_name(&self.name)?;
         check_copyright(self.copyright.as_deref())?;
         check_model(model)?;
-        let about = About { copyright: self.copyright.as_deref(), digest: digest(model) };
+        let about = GlbAsset { copyright: self.copyright.as_deref(), digest: digest(model) };
         let mut model = shown(model, self.body)?;
         with_wrong_sides(&mut model);
         if self.power_of_two {
             to_powers_of_two(&mut model);
         }
         let images = self.textures.encode_all(&model, self.quality)?;
-        let grid = self.quantise.then(|| Grid::around(&model));
+        let grid = self.quantise.then(|| ModelCube::around(&model));
         let bytes = glb(&model, &images, self.textures.mime(), grid.as_ref(), &about)?;
         Ok(OutputFiles::one(&format!("{}.glb", self.name), bytes))
     }
@@ -92,7 +92,7 @@ impl Glb {
 }
 
 /// What the file says of itself.
-struct About<'a> {
+struct GlbAsset<'a> {
     copyright: Option<&'a str>,
     /// In hexadecimal.
     digest: String,
@@ -121,8 +121,8 @@ fn glb(
     model: &Model,
     images: &[Vec<u8>],
     mime: &str,
-    grid: Option<&Grid>,
-    about: &About<'_>,
+    grid: Option<&ModelCube>,
+    about: &GlbAsset<'_>,
 ) -> Result<Vec<u8>, StageError> {
     let mut buffer = Buffer::default();
     let meshes: Vec<Value> =
@@ -162,7 +162,7 @@ fn glb(
     pack(root.to_string().into_bytes(), buffer.bytes)
 }
 
-fn asset(model: &Model, about: &About<'_>) -> Value {
+fn asset(model: &Model, about: &GlbAsset<'_>) -> Value {
     let mut asset = json!({
         "version": "2.0",
         "generator": concat!("toile ", env!("CARGO_PKG_VERSION")),

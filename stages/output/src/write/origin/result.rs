@@ -4,12 +4,12 @@ use serde_json::Value;
 
 /// A mesh of a GLB file or a group of an OBJ file: name and number of triangles, in the order of
 /// the file.
-pub(super) type Group = (String, usize);
+pub(super) type MeshGroup = (String, usize);
 
 /// The groups of a file of that extension that hold triangles.
 ///
 /// Errors: why they cannot be told.
-pub(super) fn groups(bytes: &[u8], extension: &str) -> Result<Vec<Group>, String> {
+pub(super) fn groups(bytes: &[u8], extension: &str) -> Result<Vec<MeshGroup>, String> {
     let groups = match extension {
         "glb" => glb(bytes).ok_or("it is not a GLB file that toile wrote")?,
         "obj" => obj(&String::from_utf8_lossy(bytes)),
@@ -18,7 +18,7 @@ pub(super) fn groups(bytes: &[u8], extension: &str) -> Result<Vec<Group>, String
     Ok(groups.into_iter().filter(|(_, count)| *count > 0).collect())
 }
 
-fn glb(bytes: &[u8]) -> Option<Vec<Group>> {
+fn glb(bytes: &[u8]) -> Option<Vec<MeshGroup>> {
     let word = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     if bytes.get(..4)? != b"glTF" || bytes.get(16..20)? != b"JSON" {
         return None;
@@ -33,7 +33,7 @@ fn glb(bytes: &[u8]) -> Option<Vec<Group>> {
     root["meshes"].as_array()?.iter().map(group).collect()
 }
 
-fn obj(text: &str) -> Vec<Group> {
+fn obj(text: &str) -> Vec<MeshGroup> {
     let mut groups = vec![(String::new(), 0)];
     for line in text.lines() {
         if let Some(name) = line.strip_prefix("g ") {

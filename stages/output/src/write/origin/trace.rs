@@ -1,6 +1,6 @@
 //! From a triangle of a result back to panel, outline edge and photo pixel.
 
-use super::result::{Group, groups};
+use super::result::{MeshGroup, groups};
 use super::{FILE, Origins, PanelOrigin};
 use crate::write::sides::WRONG_SIDE;
 
@@ -40,7 +40,7 @@ pub fn trace(origin: &[u8], result: &[u8], extension: &str, face: usize) -> Resu
 /// The panel of a face, and which of its triangles it is.
 fn locate<'o>(
     origins: &'o Origins,
-    groups: &[Group],
+    groups: &[MeshGroup],
     face: usize,
 ) -> Result<(&'o PanelOrigin, usize), String> {
     let total: usize = groups.iter().map(|(_, count)| count).sum();

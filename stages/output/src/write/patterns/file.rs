@@ -3,7 +3,7 @@
 use crate::file_names::check_name;
 use toile_core::prelude::*;
 use toile_pattern_files::allowance::Allowances;
-use toile_pattern_files::{Options, WriteError, Written};
+use toile_pattern_files::{DrawingOptions, WriteError, Written};
 
 /// The widest seam allowance, metres.
 const WIDEST: f64 = 0.2;
@@ -22,12 +22,12 @@ pub(crate) struct SeamAllowances {
 
 impl SeamAllowances {
     /// The options of a drawing with these allowances.
-    pub(crate) fn options(&self, size: &str) -> Options {
+    pub(crate) fn options(&self, size: &str) -> DrawingOptions {
         let (sewn, free) = (self.seam_allowance.metres(), self.hem_allowance.metres());
-        Options {
+        DrawingOptions {
             allowances: Allowances { sewn, free, ..Allowances::default() },
             size: size.to_owned(),
-            ..Options::default()
+            ..DrawingOptions::default()
         }
     }
 }

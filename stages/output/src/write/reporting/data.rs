@@ -1,11 +1,11 @@
 //! What stands on the report's page, gathered from the run's record.
 
 use crate::fit::Fit;
-use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of, thumbnail};
+use crate::render::{ArtifactPicture, ModelScene, PictureForm, View, jpeg, pictures_of, thumbnail};
 use crate::write::reporting::outline::outlined;
 use crate::write::reporting::pieces::pieces;
-use crate::write::reporting::top::{self, Told, Verdict, verdict, warnings};
-use crate::write::reporting::turn::{Turn, turn};
+use crate::write::reporting::top::{self, ResultVerdict, StageRemark, verdict, warnings};
+use crate::write::reporting::turn::{TurnedGarment, turn};
 use crate::write::reporting::views::{Views, taken};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -32,35 +32,35 @@ const MOST_NOTES: usize = 24;
 
 /// The page.
 #[derive(Debug, Serialize)]
-pub(crate) struct Page {
+pub(crate) struct ReportPage {
     title: String,
     /// The named quality; empty where nobody asked for one.
     quality: String,
     version: &'static str,
     total: String,
     /// Why the run ended early; none of one that came to its end.
-    failure: Option<Ended>,
-    verdict: Verdict,
-    warnings: Vec<Told>,
+    failure: Option<EarlyEnd>,
+    verdict: ResultVerdict,
+    warnings: Vec<StageRemark>,
     /// What stages decided.
-    decisions: Vec<Told>,
+    decisions: Vec<StageRemark>,
     views: Vec<Shown>,
-    turn: Option<Turn>,
+    turn: Option<TurnedGarment>,
     outlines: Vec<Shown>,
     pieces: Vec<Shown>,
     /// Ease and finished measures.
-    fit: Vec<Vec<Figure>>,
+    fit: Vec<Vec<NamedValue>>,
     /// Strain, tension and pressure on the cloth.
     maps: Vec<Shown>,
     shortfalls: Vec<String>,
-    figures: Vec<Vec<Figure>>,
-    stages: Vec<Section>,
-    skipped: Vec<Figure>,
+    figures: Vec<Vec<NamedValue>>,
+    stages: Vec<StageSection>,
+    skipped: Vec<NamedValue>,
 }
 
 /// Why a run ended early.
 #[derive(Debug, Serialize)]
-struct Ended {
+struct EarlyEnd {
     stage: String,
     message: String,
     /// Empty where nobody knows what may help.
@@ -79,13 +79,13 @@ struct Shown {
 
 /// A name and a value.
 #[derive(Debug, Serialize)]
-struct Figure {
+struct NamedValue {
     name: String,
     value: String,
 }
 
 #[derive(Debug, Serialize)]
-struct Section {
+struct StageSection {
     id: String,
     name: String,
     role: &'static str,
@@ -96,21 +96,21 @@ struct Section {
     /// Per cent of the longest stage.
     share: String,
     warnings: Vec<String>,
-    figures: Vec<Figure>,
+    figures: Vec<NamedValue>,
     pictures: Vec<Shown>,
     left_out: usize,
     notes: Vec<String>,
-    outputs: Vec<Output>,
+    outputs: Vec<StageOutput>,
 }
 
 #[derive(Debug, Serialize)]
-struct Output {
+struct StageOutput {
     name: String,
-    measures: Vec<Figure>,
+    measures: Vec<NamedValue>,
 }
 
 /// Gathers the page; `height` is that of the stages' pictures.
-pub(crate) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Result<Page, StageError> {
+pub(crate) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Result<ReportPage, StageError> {
     let longest = run.stages.iter().map(|s| s.wall_s).fold(1e-9, f64::max);
     let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
     let mut budget = PICTURE_BUDGET;
@@ -132,13 +132,13 @@ pub(crate) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
         (0..run.stages.len()).into_par_iter().map(drawn).collect::<Result<_, StageError>>()?;
     let sections = run.stages.iter().zip(pictures);
     let stages = sections.map(|(record, shown)| section(record, shown, longest, &mut budget)).collect();
-    let skipped = run.skipped.iter().map(|(name, why)| Figure { name: name.clone(), value: why.clone() });
-    Ok(Page {
+    let skipped = run.skipped.iter().map(|(name, why)| NamedValue { name: name.clone(), value: why.clone() });
+    Ok(ReportPage {
         title: if run.pipeline.is_empty() { "A garment".to_owned() } else { run.pipeline.clone() },
         quality: run.quality.clone().unwrap_or_default(),
         version: env!("CARGO_PKG_VERSION"),
         total: seconds(total),
-        failure: run.failure.as_ref().map(|f| Ended {
+        failure: run.failure.as_ref().map(|f| EarlyEnd {
             stage: f.stage.clone(),
             message: f.message.clone(),
             hint: f.hint.clone().unwrap_or_default(),
@@ -160,9 +160,9 @@ pub(crate) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
     })
 }
 
-fn section(record: &StageRecord, shown: Vec<Shown>, longest: f64, budget: &mut usize) -> Section {
+fn section(record: &StageRecord, shown: Vec<Shown>, longest: f64, budget: &mut usize) -> StageSection {
     let (pictures, left_out) = within(shown, budget);
-    Section {
+    StageSection {
         id: record.id.clone(),
         name: record.name.clone(),
         role: record.role.as_str(),
@@ -253,10 +253,10 @@ impl Draw<'_> {
     }
 
     /// The views at the head, at most so high.
-    fn heads_at(&self, height: u32) -> Vec<Picture> {
+    fn heads_at(&self, height: u32) -> Vec<ArtifactPicture> {
         let picture = |(name, head): &(&str, RgbImage)| {
             let form = jpeg(&thumbnail(head, height))?;
-            Some(Picture { caption: (*name).to_owned(), form })
+            Some(ArtifactPicture { caption: (*name).to_owned(), form })
         };
         self.heads.par_iter().map(picture).collect::<Vec<_>>().into_iter().flatten().collect()
     }
@@ -264,7 +264,7 @@ impl Draw<'_> {
 
 /// The outlines over their photos: those that the last stage that names outlines left, on the
 /// photos as they were read.
-fn outlines(run: &RunLog, height: u32) -> Vec<Picture> {
+fn outlines(run: &RunLog, height: u32) -> Vec<ArtifactPicture> {
     let photos = run.stages.iter().find(|s| entries(s).any(|(_, a)| is::<Photo>(a).is_some()));
     let found = run.stages.iter().rev().find(|s| entries(s).any(|(_, a)| is::<Outline>(a).is_some()));
     let (Some(photos), Some(found)) = (photos, found) else { return Vec::new() };
@@ -280,19 +280,19 @@ fn fit_files(run: &RunLog) -> Option<&OutputFiles> {
 }
 
 /// Ease and finished measures from the file of `Fit`, in centimetres.
-fn fit(files: &OutputFiles) -> Vec<Vec<Figure>> {
+fn fit(files: &OutputFiles) -> Vec<Vec<NamedValue>> {
     let json = files.0.iter().find(|f| f.path.ends_with(".json"));
     let json: serde_json::Value =
         json.and_then(|f| serde_json::from_slice(&f.bytes).ok()).unwrap_or_default();
     let cm = |v: &serde_json::Value| format!("{:.1} cm", 1e2 * v.as_f64().unwrap_or(0.0));
-    let rows = |key: &str, row: &dyn Fn(&str, &serde_json::Value) -> Figure| -> Vec<Figure> {
+    let rows = |key: &str, row: &dyn Fn(&str, &serde_json::Value) -> NamedValue| -> Vec<NamedValue> {
         json[key].as_object().into_iter().flatten().map(|(name, v)| row(&name.replace('_', " "), v)).collect()
     };
     let ease = |name: &str, v: &serde_json::Value| {
         let value = format!("{} (cloth {}, body {})", cm(&v["ease"]), cm(&v["cloth"]), cm(&v["body"]));
-        Figure { name: format!("ease, {name}"), value }
+        NamedValue { name: format!("ease, {name}"), value }
     };
-    let measure = |name: &str, v: &serde_json::Value| Figure { name: name.to_owned(), value: cm(v) };
+    let measure = |name: &str, v: &serde_json::Value| NamedValue { name: name.to_owned(), value: cm(v) };
     vec![rows("ease", &ease), rows("measures", &measure)]
 }
 
@@ -307,7 +307,7 @@ fn heads(
     if let Some(pictures) = (views == Views::Taken).then(|| taken(run, VIEW_HEIGHT)).flatten() {
         return Ok(names.into_iter().zip(pictures).collect());
     }
-    let scene = Scene::draft_in(model, cx)?;
+    let scene = ModelScene::draft_in(model, cx)?;
     let drawn = [View::front as fn(u32) -> View, View::back, View::side];
     let named: Vec<_> = names.into_iter().zip(drawn).collect();
     let heads = named.par_iter().map(|(name, view)| (*name, scene.render(&view(VIEW_HEIGHT)))).collect();
@@ -323,7 +323,7 @@ fn caption(name: &str, detail: &str) -> String {
 }
 
 /// Pictures as data URIs.
-fn shown(pictures: Vec<Picture>) -> Vec<Shown> {
+fn shown(pictures: Vec<ArtifactPicture>) -> Vec<Shown> {
     pictures.into_iter().map(|p| Shown { src: data_uri(&p.form), caption: p.caption }).collect()
 }
 
@@ -341,11 +341,11 @@ fn within(pictures: Vec<Shown>, budget: &mut usize) -> (Vec<Shown>, usize) {
     (kept, left_out)
 }
 
-fn data_uri(form: &Form) -> String {
+fn data_uri(form: &PictureForm) -> String {
     let (mime, bytes) = match form {
-        Form::Png(bytes) => ("image/png", bytes.as_slice()),
-        Form::Jpeg(bytes) => ("image/jpeg", bytes.as_slice()),
-        Form::Svg(text) => ("image/svg+xml", text.as_bytes()),
+        PictureForm::Png(bytes) => ("image/png", bytes.as_slice()),
+        PictureForm::Jpeg(bytes) => ("image/jpeg", bytes.as_slice()),
+        PictureForm::Svg(text) => ("image/svg+xml", text.as_bytes()),
     };
     format!("data:{mime};base64,{}", STANDARD.encode(bytes))
 }
@@ -364,14 +364,14 @@ fn notes(artifact: &dyn Artifact) -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }
 
-fn output(name: &str, artifact: &dyn Artifact) -> Output {
+fn output(name: &str, artifact: &dyn Artifact) -> StageOutput {
     let kind = artifact.kind().to_string();
     let name = if name.is_empty() { kind } else { format!("{name} ({kind})") };
-    Output { name, measures: artifact.measures().0.iter().map(figure).collect() }
+    StageOutput { name, measures: artifact.measures().0.iter().map(figure).collect() }
 }
 
 /// What a tailor asks of the result first: cloth, seams, strain, rest.
-fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
+fn key_figures(run: &RunLog) -> Vec<Vec<NamedValue>> {
     let Some(garment) = last::<Garment>(run, run.stages.len()) else { return Vec::new() };
     // What was judged is the garment by the pattern that it was sewn from, whatever flattener
     // stands behind.
@@ -379,13 +379,13 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
     let strain = figures.map_or_else(|| strain(garment), |f| f.garment.edge_strain);
     let open = garment.seams.iter().filter(|s| s.state == SeamState::Open).count();
     let row =
-        |name: &str, value: f64, unit: &str| Figure { name: name.to_owned(), value: number(value, unit) };
+        |name: &str, value: f64, unit: &str| NamedValue { name: name.to_owned(), value: number(value, unit) };
     let word = |yes: bool| if yes { "yes" } else { "no" }.to_owned();
     let mut cloth = vec![
         row("vertices", garment.positions.len() as f64, ""),
         row("triangles", garment.triangles.len() as f64, ""),
         row("solver steps", garment.status.steps as f64, ""),
-        Figure { name: "came to rest".to_owned(), value: word(garment.status.converged) },
+        NamedValue { name: "came to rest".to_owned(), value: word(garment.status.converged) },
         row("greatest speed", garment.status.max_speed * 1e3, "mm/s"),
         row("energy", garment.status.energy, "J"),
     ];
@@ -449,8 +449,8 @@ fn shortfalls(run: &RunLog) -> Vec<String> {
     figures.map(|f| f.shortfalls.iter().map(|s| s.message.clone()).collect()).unwrap_or_default()
 }
 
-fn figure(m: &Measure) -> Figure {
-    Figure { name: m.name.replace('_', " "), value: number(m.value, m.unit) }
+fn figure(m: &Measure) -> NamedValue {
+    NamedValue { name: m.name.replace('_', " "), value: number(m.value, m.unit) }
 }
 
 /// A number for people: whole numbers whole, others with four significant digits.

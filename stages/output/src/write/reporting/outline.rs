@@ -1,6 +1,6 @@
 //! The outlines over their photos: whether the garment was found where it is.
 
-use crate::render::{Form, Picture, jpeg, thumbnail};
+use crate::render::{ArtifactPicture, PictureForm, jpeg, thumbnail};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;
@@ -10,14 +10,14 @@ use toile_core::artifact::{Outline, Photo, Point2};
 const COLOUR: &str = "#e0218a";
 
 /// A photo with its outline, so high; none where the outline is of no photo.
-pub(crate) fn outlined(name: &str, photo: &Photo, outline: &Outline, height: u32) -> Option<Picture> {
+pub(crate) fn outlined(name: &str, photo: &Photo, outline: &Outline, height: u32) -> Option<ArtifactPicture> {
     let frame = outline.frame?;
     // The outline may have been found on a smaller copy of the photo.
     let larger = photo.px_per_metre.map_or(1.0, |s| s / frame.px_per_metre);
     let small = thumbnail(&photo.pixels, height);
     let shown = f64::from(small.width()) / f64::from(photo.pixels.width());
     let at = |p: &Point2| frame.to_px(*p).coords.map(|c| ((c + 0.5) * larger) * shown);
-    let Form::Jpeg(bytes) = jpeg(&small)? else { return None };
+    let PictureForm::Jpeg(bytes) = jpeg(&small)? else { return None };
     let (w, h) = small.dimensions();
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\">\n\
@@ -33,7 +33,10 @@ pub(crate) fn outlined(name: &str, photo: &Photo, outline: &Outline, height: u32
         );
     }
     svg.push_str("</svg>\n");
-    Some(Picture { caption: format!("{name}: the outline that was found"), form: Form::Svg(svg) })
+    Some(ArtifactPicture {
+        caption: format!("{name}: the outline that was found"),
+        form: PictureForm::Svg(svg),
+    })
 }
 
 #[cfg(test)]
@@ -51,7 +54,7 @@ mod tests {
             mirrored: false,
             turn: 0.0,
         });
-        let Form::Svg(svg) = outlined("front", &photo, &outline, 2000).unwrap().form else {
+        let PictureForm::Svg(svg) = outlined("front", &photo, &outline, 2000).unwrap().form else {
             panic!("an SVG")
         };
         let first = outline.frame.unwrap().to_px(outline.outer.points[0]);

@@ -1,6 +1,6 @@
 //! The flat pieces with their seams: both sides of a seam have its number and colour.
 
-use crate::render::{Form, PANEL_COLOURS, Picture, escaped};
+use crate::render::{ArtifactPicture, PANEL_COLOURS, PictureForm, escaped};
 use std::fmt::Write;
 use toile_core::artifact::{Garment, GarmentPanel, Point2, Vector2};
 
@@ -12,7 +12,7 @@ const WIDEST: f64 = 2400.0;
 const INSIDE: f64 = 26.0;
 
 /// Every piece of a garment on one sheet, millimetres; none where the flat shapes are not known.
-pub(crate) fn pieces(garment: &Garment) -> Option<Picture> {
+pub(crate) fn pieces(garment: &Garment) -> Option<ArtifactPicture> {
     let placed = placed(garment)?;
     let (mut body, mut size) = (String::new(), [0.0f64; 2]);
     for (panel, to, extent) in &placed {
@@ -57,9 +57,9 @@ pub(crate) fn pieces(garment: &Garment) -> Option<Picture> {
         -GAP / 2.0,
         -GAP / 2.0
     );
-    Some(Picture {
+    Some(ArtifactPicture {
         caption: "pieces as they are cut; equal numbers are sewn together".to_owned(),
-        form: Form::Svg(svg),
+        form: PictureForm::Svg(svg),
     })
 }
 
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn both_sides_of_every_seam_have_its_number() {
-        let Form::Svg(svg) = pieces(&dress::garment()).unwrap().form else { panic!("an SVG") };
+        let PictureForm::Svg(svg) = pieces(&dress::garment()).unwrap().form else { panic!("an SVG") };
         for number in 1..=4 {
             assert_eq!(svg.matches(&format!(">{number}</text>")).count(), 2, "seam {number}");
         }

@@ -4,7 +4,7 @@
 //! measures. Cost: two small drawings for every garment on the way. Limit: pictures beyond
 //! `PICTURE_BUDGET` are left out, and the page says so.
 
-use crate::write::reporting::data::{Page, VIEW_HEIGHT, page};
+use crate::write::reporting::data::{ReportPage, VIEW_HEIGHT, page};
 use crate::write::reporting::views::{self, Views};
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
@@ -62,7 +62,7 @@ impl Report {
     }
 }
 
-fn html(page: &Page) -> Result<String, minijinja::Error> {
+fn html(page: &ReportPage) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build()?);
     environment.add_template(TEMPLATE.0, TEMPLATE.1)?;

@@ -7,7 +7,7 @@ use toile_core::{RunLog, StageRecord};
 
 /// Whether the result is good, in a word and a sentence.
 #[derive(Debug, Serialize, PartialEq, Eq)]
-pub(crate) struct Verdict {
+pub(crate) struct ResultVerdict {
     /// `good`, `short` or `failed`: the look of the page.
     pub class: &'static str,
     pub word: String,
@@ -16,22 +16,22 @@ pub(crate) struct Verdict {
 
 /// What a stage told.
 #[derive(Debug, Serialize, PartialEq, Eq)]
-pub(crate) struct Told {
+pub(crate) struct StageRemark {
     pub stage: String,
     pub text: String,
 }
 
 /// The verdict on a run that misses so many limits.
-pub(crate) fn verdict(run: &RunLog, garment: Option<&Garment>, missed: usize) -> Verdict {
+pub(crate) fn verdict(run: &RunLog, garment: Option<&Garment>, missed: usize) -> ResultVerdict {
     if let Some(failure) = &run.failure {
         let sentence = format!("The run ended in {}: {}", failure.stage, failure.message);
-        return Verdict { class: "failed", word: "Not made".to_owned(), sentence };
+        return ResultVerdict { class: "failed", word: "Not made".to_owned(), sentence };
     }
     let sentence = garment.map_or_else(String::new, made);
     match missed {
-        0 => Verdict { class: "good", word: "Good".to_owned(), sentence },
-        1 => Verdict { class: "short", word: "Made, but it misses a limit".to_owned(), sentence },
-        n => Verdict { class: "short", word: format!("Made, but it misses {n} limits"), sentence },
+        0 => ResultVerdict { class: "good", word: "Good".to_owned(), sentence },
+        1 => ResultVerdict { class: "short", word: "Made, but it misses a limit".to_owned(), sentence },
+        n => ResultVerdict { class: "short", word: format!("Made, but it misses {n} limits"), sentence },
     }
 }
 
@@ -47,18 +47,18 @@ fn made(garment: &Garment) -> String {
 }
 
 /// Every warning, in the order of the stages.
-pub(crate) fn warnings(run: &RunLog) -> Vec<Told> {
+pub(crate) fn warnings(run: &RunLog) -> Vec<StageRemark> {
     told(run, |remarks| &remarks.warnings)
 }
 
 /// Every note, in the order of the stages.
-pub(crate) fn notes(run: &RunLog) -> Vec<Told> {
+pub(crate) fn notes(run: &RunLog) -> Vec<StageRemark> {
     told(run, |remarks| &remarks.notes)
 }
 
-fn told(run: &RunLog, texts: impl Fn(&Remarks) -> &Vec<String>) -> Vec<Told> {
-    let of = |s: &StageRecord| -> Vec<Told> {
-        texts(&s.remarks).iter().map(|text| Told { stage: s.id.clone(), text: text.clone() }).collect()
+fn told(run: &RunLog, texts: impl Fn(&Remarks) -> &Vec<String>) -> Vec<StageRemark> {
+    let of = |s: &StageRecord| -> Vec<StageRemark> {
+        texts(&s.remarks).iter().map(|text| StageRemark { stage: s.id.clone(), text: text.clone() }).collect()
     };
     run.stages.iter().flat_map(of).collect()
 }

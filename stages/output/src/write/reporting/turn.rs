@@ -11,7 +11,7 @@ use toile_core::artifact::OutputFiles;
 
 /// What the page needs to show the garment from all sides.
 #[derive(Debug, Serialize)]
-pub(crate) struct Turn {
+pub(crate) struct TurnedGarment {
     style: &'static str,
     script: String,
     /// JSON in which `<` is escaped.
@@ -20,7 +20,7 @@ pub(crate) struct Turn {
 }
 
 /// The turntable among the files of a run, with the origins where they are there as well.
-pub(crate) fn turn<'a>(files: impl Iterator<Item = &'a OutputFiles>) -> Option<Turn> {
+pub(crate) fn turn<'a>(files: impl Iterator<Item = &'a OutputFiles>) -> Option<TurnedGarment> {
     let (mut data, mut origins) = (None, None);
     for file in files.flat_map(|f| &f.0) {
         if file.path.ends_with(".html") {
@@ -32,7 +32,7 @@ pub(crate) fn turn<'a>(files: impl Iterator<Item = &'a OutputFiles>) -> Option<T
     let origins = origins
         .map_or_else(|| json!({}), |o| o.panels.iter().map(|p| (p.name.clone(), compact(p))).collect());
     let data = data?;
-    Some(Turn {
+    Some(TurnedGarment {
         style: STYLE,
         script: script(&data),
         data,

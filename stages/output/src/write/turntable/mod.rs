@@ -13,7 +13,7 @@ mod sheet;
 
 use super::check::check_model;
 use crate::file_names::check_name;
-use crate::render::{Orbit, Scene, Surroundings};
+use crate::render::{ModelScene, Orbit, Surroundings};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{RgbImage, RgbaImage};
@@ -175,7 +175,7 @@ impl Turntable {
         tiers: &[f64],
         cx: &Context,
     ) -> Result<Vec<RgbaImage>, StageError> {
-        let scene = Scene::draft_within(model, panorama.map(Surroundings::new), cx)?;
+        let scene = ModelScene::draft_within(model, panorama.map(Surroundings::new), cx)?;
         let elevations: Vec<f64> = tiers.iter().map(|t| t.to_radians()).collect();
         let mut by_azimuth = Vec::new();
         let turns: Vec<f64> =

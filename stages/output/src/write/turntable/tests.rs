@@ -32,7 +32,7 @@ fn the_page_holds_every_view_and_asks_for_nothing_else() {
 fn all_of_the_garment_is_in_every_view() {
     let model = dress::model();
     let orbit = Orbit::around(&model, 72, 96, TIERS[2]);
-    for view in Scene::draft(&model).cut_outs(&orbit, 0.3, &[0.0]) {
+    for view in ModelScene::draft(&model).cut_outs(&orbit, 0.3, &[0.0]) {
         // The suite's mannequin runs out of the picture, its garment does not: nothing of it is at
         // the sides.
         assert!((0..96).all(|y| view.get_pixel(0, y).0[3] == 0 && view.get_pixel(71, y).0[3] == 0));
@@ -121,7 +121,7 @@ fn a_panorama_stands_in_the_page_and_lights_the_model_from_its_own_side() {
     assert!(data(&html(&small(), &cx)).get("panorama").is_none());
     let (model, orbit) = (dress::model(), Orbit::around(&dress::model(), 72, 96, TIERS[0]));
     let room = read_panorama("room.png", &cx).unwrap();
-    let scene = Scene::draft_within(&model, Some(Surroundings::new(&room)), &cx).unwrap();
+    let scene = ModelScene::draft_within(&model, Some(Surroundings::new(&room)), &cx).unwrap();
     let brightness = |turn: f64| {
         let view = scene.cut_outs(&orbit, turn, &[0.0]).remove(0);
         let seen: Vec<u64> = view

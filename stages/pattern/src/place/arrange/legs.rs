@@ -83,8 +83,8 @@ pub(super) fn swing(
 }
 
 /// For each piece that reaches below the first height, whether it and all that is sewn to it there
-/// lie on one side of the middle, there and right below the fork, the second height: a skirt that is
-/// longer on one side lies on that side only low down.
+/// lie on one side of the middle, there and right below the fork, the second height: a skirt that
+/// is longer on one side lies on that side only low down.
 fn of_one_leg(
     places: &BTreeMap<String, Vec<Point3>>,
     seams: &[GarmentSeam],

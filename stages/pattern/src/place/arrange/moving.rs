@@ -1,7 +1,8 @@
-//! Pieces that are moved to the body's limbs, and the starts without that.
+//! Pieces that are moved to the body's limbs, and the start without that.
 //!
-//! Whether a piece is one of a leg or an arm is guessed from labels, seams and places. So each move
-//! has its alternative: the pieces where the pattern puts them. Who sews the garment tries them.
+//! Whether a piece is one of a leg is guessed from labels, seams and places. So that move has its
+//! alternative: the pieces where the pattern puts them. The stage that sews the garment tries both.
+//! Sleeves have none: flat beside the arm, they sew worse in all garments that were tried.
 
 use super::limb::Limb;
 use super::{legs, tubes};
@@ -28,26 +29,15 @@ pub(super) struct Moving<'a> {
 type Moved = (Places, Vec<String>);
 
 impl Moving<'_> {
-    /// The pieces moved to legs and arms, and the places without one of these moves or both, each
-    /// in words.
+    /// The pieces moved to legs and arms; and, where legs were moved, the places without that, in
+    /// words.
     pub(super) fn moved_and_others(&self, places: &Places) -> (Moved, Vec<(&'static str, Places)>) {
-        let swung = self.swung(places.clone());
-        let (has_swung, bent) = (!swung.1.is_empty(), self.bent(places.clone()));
-        let has_bent = !bent.1.is_empty();
-        // Without a place in the pattern, a sleeve has none but that around the arm.
-        let is_filed = self.sleeves.is_none();
-        let mut others = Vec::new();
-        if has_swung {
-            others.push(("with the legs where the pattern puts them", bent.0));
-        }
-        if has_bent && is_filed {
-            others.push(("with the sleeves where the pattern puts them", swung.0.clone()));
-        }
-        if has_swung && has_bent && is_filed {
-            others.push(("with all pieces where the pattern puts them", places.clone()));
-        }
-        let mut told = swung.1;
-        let (places, of_arms) = self.bent(swung.0);
+        let (swung, mut told) = self.swung(places.clone());
+        let others = match told.is_empty() {
+            true => Vec::new(),
+            false => vec![("with the legs where the pattern puts them", self.bent(places.clone()).0)],
+        };
+        let (places, of_arms) = self.bent(swung);
         told.extend(of_arms);
         ((places, told), others)
     }

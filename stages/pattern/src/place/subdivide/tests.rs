@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::collections::BTreeMap;
 use toile_core::Cancel;
 use toile_core::prelude::*;
-use toile_fixtures::cloth::{Grid, garment, hanging, plain, vest};
+use toile_fixtures::cloth::{ClothGrid, garment, hanging, plain, vest};
 use toile_fixtures::photographed;
 
 /// Panels of 8 by 8 cells round a body, their sides joined, the upper rim held.
@@ -54,15 +54,15 @@ fn counts(garment: &Garment) -> [usize; 3] {
     [garment.positions.len(), garment.edges().len(), garment.triangles.len()]
 }
 
-fn square(columns: usize, rows: usize) -> Grid {
-    Grid { columns, rows, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) }
+fn square(columns: usize, rows: usize) -> ClothGrid {
+    ClothGrid { columns, rows, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) }
 }
 
 /// Grids of these columns and rows, sewn by one open seam; vertices of the second count from its
 /// own first.
 fn sewn(grids: &[(usize, usize)], pairs: &[[u32; 2]], shift: bool) -> Garment {
-    let grids: Vec<Grid> = grids.iter().map(|&(c, r)| square(c, r)).collect();
-    let named: Vec<(&str, &Grid)> = ["first", "second"].into_iter().zip(&grids).collect();
+    let grids: Vec<ClothGrid> = grids.iter().map(|&(c, r)| square(c, r)).collect();
+    let named: Vec<(&str, &ClothGrid)> = ["first", "second"].into_iter().zip(&grids).collect();
     let mut g = garment(&named, &plain(500.0, 50.0, 1e-5));
     let shift = if shift { g.panels[1].vertices.start as u32 } else { 0 };
     let pairs = pairs.iter().map(|p| [p[0], p[1] + shift]).collect();

@@ -3,7 +3,7 @@
 use super::repairs::{Meant, Repair, SyntaxFault};
 use super::{Parser, fault, is_name};
 use crate::load::syntax::escapes;
-use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, GroupEntry, ValueShape, ValueTree};
 use std::ops::Range;
 
 /// The longest value that a message repeats, characters.
@@ -15,7 +15,7 @@ impl Parser<'_> {
         &self,
         bracket: Bracket,
         opened: &Range<usize>,
-        entries: &[Entry],
+        entries: &[GroupEntry],
     ) -> SyntaxFault {
         let plain = self.unclosed(opened, &format!("`,` or `{}`", bracket.close()));
         let (Some(entry), Some(c)) = (entries.last(), self.peek()) else {
@@ -47,7 +47,7 @@ impl Parser<'_> {
             fault = fault.meant(Repair::Value(text.start..to), Some(words));
         }
         // A bare word or number and more words: a text without its quotes.
-        let bare = matches!(value.shape, Shape::Literal | Shape::Name)
+        let bare = matches!(value.shape, ValueShape::Literal | ValueShape::Name)
             && !self.text[value.span.clone()].contains('"');
         let same_line = !self.text[end..self.at].contains('\n');
         let to = self.bare_end();
@@ -58,7 +58,7 @@ impl Parser<'_> {
             fault =
                 fault.meant(Repair::Value(value.span.start..to), Some((message, hint, value.span.start..to)));
         }
-        if bracket == Bracket::Round && entry.key.is_none() && value.shape == Shape::Name {
+        if bracket == Bracket::Round && entry.key.is_none() && value.shape == ValueShape::Name {
             let name = &self.text[value.span.clone()];
             let message = match c {
                 '=' => format!("expected `:` after `{name}`, found `=`"),
@@ -86,7 +86,7 @@ impl Parser<'_> {
         fault: SyntaxFault,
         bracket: Bracket,
         opened: &Range<usize>,
-        entries: &[Entry],
+        entries: &[GroupEntry],
     ) -> SyntaxFault {
         let early = self.early_end(opened, entries).map(|at| {
             let next =
@@ -114,14 +114,14 @@ impl Parser<'_> {
 
     /// Where a bracket that was never closed probably ends: before the first entry on a later line
     /// that is of another form than those before it.
-    fn early_end(&self, opened: &Range<usize>, entries: &[Entry]) -> Option<usize> {
-        let start = |e: &Entry| e.key.as_ref().map_or(e.value.span.start, |k| k.start);
-        let form = |e: &Entry| match &e.key {
+    fn early_end(&self, opened: &Range<usize>, entries: &[GroupEntry]) -> Option<usize> {
+        let start = |e: &GroupEntry| e.key.as_ref().map_or(e.value.span.start, |k| k.start);
+        let form = |e: &GroupEntry| match &e.key {
             None => 0,
             Some(key) if self.text[key.clone()].starts_with('"') => 1,
             Some(_) => 2,
         };
-        let later = |e: &&Entry| self.text[opened.end..start(e)].contains('\n');
+        let later = |e: &&GroupEntry| self.text[opened.end..start(e)].contains('\n');
         let first = entries.first()?;
         let is_round = self.text[opened.clone()] == *"(";
         // A stage's arguments stand on its line, or have names.
@@ -188,7 +188,7 @@ impl Parser<'_> {
     }
 
     /// A text that ended just before: it may have run on beyond its end.
-    fn text_before(&self, value: &Tree) -> Option<Range<usize>> {
+    fn text_before(&self, value: &ValueTree) -> Option<Range<usize>> {
         let text = self.last_text.clone().filter(|t| *t == value.span)?;
         let runs_on = self.text[text.clone()].contains('\n') || text.end == self.at;
         runs_on.then_some(text)
@@ -225,15 +225,17 @@ impl Parser<'_> {
 }
 
 /// A value as a message names it: short ones whole, of a group its head.
-fn shown(text: &str, value: &Tree) -> String {
+fn shown(text: &str, value: &ValueTree) -> String {
     let own = text.get(value.span.clone()).unwrap_or("");
     let whole = own.chars().count() <= MAX_SHOWN && !own.contains('\n');
     match &value.shape {
         _ if whole => format!("`{own}`"),
-        Shape::Group { name: Some(name), .. } => format!("`{}(...)`", text.get(name.clone()).unwrap_or("")),
-        Shape::Group { bracket: Bracket::Round, .. } => "`(...)`".into(),
-        Shape::Group { bracket: Bracket::Square, .. } => "`[...]`".into(),
-        Shape::Group { bracket: Bracket::Curly, .. } => "`{...}`".into(),
+        ValueShape::Group { name: Some(name), .. } => {
+            format!("`{}(...)`", text.get(name.clone()).unwrap_or(""))
+        }
+        ValueShape::Group { bracket: Bracket::Round, .. } => "`(...)`".into(),
+        ValueShape::Group { bracket: Bracket::Square, .. } => "`[...]`".into(),
+        ValueShape::Group { bracket: Bracket::Curly, .. } => "`{...}`".into(),
         _ => "this value".into(),
     }
 }

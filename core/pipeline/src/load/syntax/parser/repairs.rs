@@ -1,6 +1,6 @@
 //! Faults of syntax, what may have been meant at one, and how a text is read with that.
 
-use crate::load::syntax::tree::{Shape, Tree};
+use crate::load::syntax::tree::{ValueShape, ValueTree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -59,7 +59,7 @@ impl Repair {
 
 /// Repairs of a text, each at its byte.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Repairs {
+pub(crate) struct TextRepairs {
     pub(super) commas: BTreeSet<usize>,
     pub(super) colons: BTreeSet<usize>,
     /// How many brackets are closed.
@@ -69,11 +69,11 @@ pub(crate) struct Repairs {
     list: Vec<Repair>,
 }
 
-impl Repairs {
+impl TextRepairs {
     /// Says of every value whether something in it was repaired.
-    pub(crate) fn mark(&self, tree: &mut Tree) {
+    pub(crate) fn mark(&self, tree: &mut ValueTree) {
         tree.is_broken = self.list.iter().any(|r| r.is_in(&tree.span));
-        if let (true, Shape::Group { entries, .. }) = (tree.is_broken, &mut tree.shape) {
+        if let (true, ValueShape::Group { entries, .. }) = (tree.is_broken, &mut tree.shape) {
             entries.iter_mut().for_each(|e| self.mark(&mut e.value));
         }
     }

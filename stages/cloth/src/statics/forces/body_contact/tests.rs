@@ -2,6 +2,7 @@
 use crate::contact::body::Body;
 use crate::scene::{Scene, generate};
 use crate::statics::factor::scalar::Precision;
+use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::testing::on_its_body;
 use crate::statics::newton::to_rest::{NewtonOptions, Proof, relax};
@@ -23,15 +24,15 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
     let mut x = scene.positions.clone();
     let middle = (0..x.len()).min_by(|&a, &b| x[a].xz().norm().total_cmp(&x[b].xz().norm())).unwrap();
     let (stiffness, offset) = {
-        let s = system.body_contact.as_mut().unwrap();
+        let s = system.get_mut::<BodyContact>().unwrap();
         // So that the layer is as thick everywhere.
         s.edges.clear();
         (s.stiffness[middle], s.offsets[middle])
     };
     // Ten times what the spring has at the guard.
     let load = 10.0 * stiffness * 0.5 * offset;
-    system.push = vec![Vec3::zeros(); x.len()];
-    system.push[middle] = Vec3::y() * -load;
+    system.loads.push = vec![Vec3::zeros(); x.len()];
+    system.loads.push[middle] = Vec3::y() * -load;
     let options = NewtonOptions {
         first: 0.05,
         longest: 1.0,
@@ -58,7 +59,8 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
     )
     .unwrap();
     assert!(outcome.at_rest && outcome.residual < 1e-3 * load, "{outcome:?}");
-    let touch = system.touches.iter().find(|t| t.node as usize == middle).unwrap();
+    let touch =
+        system.get::<BodyContact>().unwrap().touches.iter().find(|t| t.node as usize == middle).unwrap();
     assert!(touch.force > 0.9 * load, "{} of {load} N", touch.force);
     let height = body.nearest(&x[middle], 1.0).unwrap().distance;
     assert!(height > 0.5 * offset && height < offset, "{height}");
@@ -74,15 +76,22 @@ fn contact_that_is_hard_brings_a_node_out_of_the_body() {
         let top = (0..x.len()).min_by(|&a, &b| x[a].xz().norm().total_cmp(&x[b].xz().norm())).unwrap();
         let height = body.nearest(&x[top], 1.0).unwrap().distance;
         x[top] -= Vec3::y() * (height + 5e-3);
-        let of = |system: &System<'_>, i: usize| system.body_contact.as_ref().unwrap().stiffness[i];
+        let of = |system: &System<'_>, i: usize| system.get::<BodyContact>().unwrap().stiffness[i];
         let before = (of(&system, top), of(&system, top + 1));
         system.update_contacts(&x);
         system.update_contacts(&x);
         assert_eq!((of(&system, top), of(&system, top + 1)), before, "it is not hard yet");
-        system.body_contact.as_mut().unwrap().stiffens_inside = true;
+        system.get_mut::<BodyContact>().unwrap().stiffens_inside = true;
         (0..3).for_each(|_| system.update_contacts(&x));
         assert_eq!((of(&system, top), of(&system, top + 1)), (16.0 * before.0, before.1));
-        let force = system.touches.iter().find(|t| t.node as usize == top).unwrap().force;
+        let force = system
+            .get::<BodyContact>()
+            .unwrap()
+            .touches
+            .iter()
+            .find(|t| t.node as usize == top)
+            .unwrap()
+            .force;
         assert!(force > 15.0 * before.0 * 5e-3, "{force}");
     });
 }

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::linear::Pattern;
+use crate::statics::forces::force::Force;
 use crate::statics::forces::self_contact::SelfContact;
 use nalgebra::{DMatrix, Matrix3};
 use toile_geometry::pair::{Kind, Pair};
@@ -63,7 +64,7 @@ fn a_vertex_that_slides_onto_the_next_triangle_is_held_as_before() {
     self_contact.pairs = vec![over([1, 3, 2])];
     // A hair over the border: the way is as long as before, but the contact another one.
     let step = Vec3::new(0.0021, 0.0, 0.0021);
-    self_contact.friction_contacts[0].anchor += step;
+    self_contact.friction_contacts[0].memory.anchor += step;
     x[4] += step;
     self_contact.update_contacts(&x);
     assert_eq!(self_contact.friction_contacts[0].nodes, [4, 1, 3, 2]);
@@ -85,10 +86,10 @@ fn a_contact_seen_from_the_other_side_takes_the_way_over_turned_round() {
 fn the_anchor_is_dragged_only_behind_what_slides_on() {
     let (mut self_contact, mut x) = slid(Vec3::new(3e-4, 0.0, 0.0));
     let held = self_contact.friction_contacts.clone();
-    self_contact.drag_anchors(&x);
+    self_contact.end_step(&x);
     assert_eq!(self_contact.friction_contacts, held);
     x[4].x += 2e-4;
-    self_contact.drag_anchors(&x);
+    self_contact.end_step(&x);
     let way =
         self_contact.friction_contacts[0].coulomb().displacement(&self_contact.friction_contacts[0].at(&x));
     assert!((way.norm() - 0.577e-4).abs() < 1e-9, "{way}");
@@ -97,7 +98,7 @@ fn the_anchor_is_dragged_only_behind_what_slides_on() {
 #[test]
 fn force_and_matrix_are_derivatives_and_the_matrix_never_softens() {
     let (self_contact, mut x) = slid(Vec3::new(0.7e-4, 0.0, 0.4e-4));
-    let pattern = Pattern::new(5, |visit| self_contact.groups().for_each(|g| visit(g)));
+    let pattern = Pattern::new(5, |visit| self_contact.collisions(&mut |g| visit(g)));
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
     self_contact.add_matrix(&x, &pattern, &mut values);
     let gradient = |x: &[Vec3]| {

@@ -1,6 +1,8 @@
 #![allow(clippy::unwrap_used)]
 use crate::scene::Scene;
 use crate::scene::generate;
+use crate::statics::forces::force::{Force, Place};
+use crate::statics::forces::ridges::Ridges;
 use crate::statics::forces::system::System;
 use crate::statics::levels::testing::on_its_body;
 use nalgebra::Vector3;
@@ -19,8 +21,8 @@ fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
 fn ready(system: &mut System<'_>, x: &[Vec3]) {
     system.find_pierced(x);
     system.seek_ridges(x);
-    let body_contact = system.body_contact.clone().unwrap();
-    system.ridges.as_mut().unwrap().update_contacts(&body_contact, x);
+    let body = system.body.unwrap();
+    system.get_mut::<Ridges>().unwrap().update_contacts(body, x);
 }
 
 /// The lowest height at which the sheet's edges pass over the blade's middle, m.
@@ -53,7 +55,7 @@ fn the_force_of_an_edge_is_the_slope_of_its_energy() {
     let (scene, x) = over_a_blade(6e-4, 2e-4);
     on_its_body(&scene, |mut system, _, _| {
         ready(&mut system, &x);
-        let ridges = system.ridges.as_ref().unwrap();
+        let ridges = system.get::<Ridges>().unwrap();
         assert!(ridges.contacts.len() > 5, "{}", ridges.contacts.len());
         let mut slope = vec![Vec3::zeros(); x.len()];
         ridges.add_gradient(&x, &mut slope);
@@ -62,9 +64,11 @@ fn the_force_of_an_edge_is_the_slope_of_its_energy() {
         for i in 0..x.len() {
             let mut energy = |by: f64| {
                 at[i].y = x[i].y + by;
-                let e = ridges.value(&at);
+                let place = Place { x: &at, body: system.body, on_body: &[], loads: &system.loads };
+                let mut energy = 0.0;
+                ridges.add_contact_value(&place, &mut energy);
                 at[i] = x[i];
-                e
+                energy
             };
             let found = (energy(step) - energy(-step)) / (2.0 * step);
             assert!((found - slope[i].y).abs() < 1e-4 * most, "{found} {}", slope[i].y);
@@ -77,7 +81,7 @@ fn cloth_that_a_blade_passes_through_is_pushed_up_over_it() {
     let (scene, x) = over_a_blade(-0.02, 1e-3);
     on_its_body(&scene, |mut system, _, _| {
         ready(&mut system, &x);
-        let ridges = system.ridges.as_ref().unwrap();
+        let ridges = system.get::<Ridges>().unwrap();
         assert!(!ridges.pierced.is_empty());
         let mut slope = vec![Vec3::zeros(); x.len()];
         ridges.add_gradient(&x, &mut slope);
@@ -92,5 +96,5 @@ fn cloth_that_a_blade_passes_through_is_pushed_up_over_it() {
 
 #[test]
 fn a_ball_has_nothing_to_look_after() {
-    on_its_body(&generate::drape(4), |system, _, _| assert!(system.ridges.is_none()));
+    on_its_body(&generate::drape(4), |system, _, _| assert!(system.get::<Ridges>().is_none()));
 }

@@ -12,7 +12,7 @@ fn with_sheets(check: impl FnOnce(System<'_>, ClothTree, Vec<Vec3>)) {
     let pieces = Pieces::new(&scene);
     let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
     let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
-    let self_contact = system.self_contact.as_mut().unwrap();
+    let self_contact = system.get_mut::<SelfContact>().unwrap();
     self_contact.thickness = 2e-3;
     let each = scene.positions.len() / 3;
     let at = |(k, p): (usize, &Vec3)| {
@@ -51,7 +51,7 @@ fn wanted(tree: &ClothTree, x: &[Vec3], moves: &[Vec3], thickness: f64) -> Vec<P
 
 /// Self-contact has these pairs, each once.
 fn known(system: &System<'_>, wanted: &[Pair]) {
-    let pairs = &system.self_contact.as_ref().unwrap().pairs;
+    let pairs = &system.get::<SelfContact>().unwrap().pairs;
     assert!(pairs.windows(2).all(|w| w[0] < w[1]));
     assert!(wanted.iter().all(|p| pairs.binary_search(p).is_ok()));
 }
@@ -62,7 +62,7 @@ proptest! {
     #[test]
     fn every_step_knows_what_may_meet_on_its_way(seed in 0u64..1000, share in 0.0..0.5f64) {
         with_sheets(|mut system, tree, mut x| {
-            let (slack, thickness) = system.self_contact.as_ref().map(|c| (c.slack(), c.thickness)).unwrap();
+            let (slack, thickness) = system.get::<SelfContact>().map(|c| (c.slack(), c.thickness)).unwrap();
             let mut nearby = Nearby::new(Some(tree.clone()));
             for round in 0..6 {
                 // Still rounds between see what is left of the long ones.
@@ -82,18 +82,18 @@ proptest! {
 #[test]
 fn what_hardly_moves_is_not_sought_again() {
     with_sheets(|mut system, tree, x| {
-        let slack = system.self_contact.as_ref().map(|c| c.slack()).unwrap();
+        let slack = system.get::<SelfContact>().map(|c| c.slack()).unwrap();
         let mut nearby = Nearby::new(Some(tree));
         nearby.seek(&mut system, &x, &moves(1, x.len(), slack, 0.0));
         // One that is not there any more would be found again by a search.
-        let known = std::mem::take(&mut system.self_contact.as_mut().unwrap().pairs);
+        let known = std::mem::take(&mut system.get_mut::<SelfContact>().unwrap().pairs);
         assert!(known.len() > 100);
         let mut moves = vec![Vec3::zeros(); x.len()];
         nearby.seek(&mut system, &x, &moves);
-        assert!(system.self_contact.as_ref().unwrap().pairs.is_empty());
+        assert!(system.get::<SelfContact>().unwrap().pairs.is_empty());
         moves[7] = Vec3::y() * 1.01 * slack;
         nearby.seek(&mut system, &x, &moves);
-        let found = &system.self_contact.as_ref().unwrap().pairs;
+        let found = &system.get::<SelfContact>().unwrap().pairs;
         assert!(!found.is_empty() && found.iter().all(|p| p.nodes.contains(&7)));
     });
 }
@@ -101,7 +101,7 @@ fn what_hardly_moves_is_not_sought_again() {
 #[test]
 fn a_part_keeps_its_distance_from_where_pairs_end() {
     with_sheets(|mut system, tree, mut x| {
-        let slack = system.self_contact.as_ref().map(|c| c.slack()).unwrap();
+        let slack = system.get::<SelfContact>().map(|c| c.slack()).unwrap();
         let mut nearby = Nearby::new(Some(tree));
         nearby.seek(&mut system, &x, &vec![Vec3::zeros(); x.len()]);
         let was = x.clone();
@@ -128,11 +128,11 @@ fn layers_that_lie_in_each_other_and_meet_are_taken_apart_as_crossings_are() {
         nearby.limit(&mut system, &x, &mut moves);
         assert!(nearby.is_intersecting(&system) && !system.is_intersecting());
         nearby.resolve_intersections(&mut system, &x);
-        let intersecting = &system.self_contact.as_ref().unwrap().intersecting;
+        let intersecting = &system.get::<SelfContact>().unwrap().intersecting;
         assert!(intersecting[..2 * each].iter().all(|t| *t) && !intersecting[2 * each..].contains(&true));
         // The layers of a stack come near each other under great loads and are held apart.
-        system.self_contact.as_mut().unwrap().stacked = true;
-        system.self_contact.as_mut().unwrap().intersecting.clear();
+        system.get_mut::<SelfContact>().unwrap().stacked = true;
+        system.get_mut::<SelfContact>().unwrap().intersecting.clear();
         let mut moves: Vec<Vec3> =
             (0..x.len()).map(|k| Vec3::y() * if k < each { 1e-4 } else { 0.0 }).collect();
         nearby.limit(&mut system, &x, &mut moves);

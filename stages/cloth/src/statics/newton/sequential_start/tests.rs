@@ -5,6 +5,7 @@ use crate::energy::Models;
 use crate::scene::{Scene, generate};
 use crate::statics::drive::solve::{StaticEquilibrium, StaticsError};
 use crate::statics::factor::scalar::Precision;
+use crate::statics::forces::seam_force::SeamForce;
 use crate::statics::levels::assemble::{Collider, assemble, cloths as fabrics};
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::newton::state::Proof;
@@ -23,7 +24,7 @@ fn with_system(scene: &Scene, check: impl FnOnce(System<'_>, &ClothTree, Vec<Vec
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&fabrics(scene)).unwrap();
     let mut system = assemble(scene, Some(collider), &pieces, &sheet, false, Models::STATIC).unwrap();
-    system.self_contact.iter_mut().for_each(|c| c.stacked = true);
+    system.get_mut::<SelfContact>().into_iter().for_each(|c| c.stacked = true);
     check(system, &ClothTree::new(sheet.triangles(), &scene.positions), scene.positions.clone());
 }
 
@@ -63,11 +64,11 @@ fn cloths_come_from_the_innermost_outwards() {
     with_system(&shuffled(&[3, 0, 2, 1]), |mut system, _, x| {
         assert_eq!(order(&system, &x), [1, 3, 2, 0]);
         // Without a body, from the lowest up.
-        system.body_contact = None;
+        system.body = None;
         assert_eq!(order(&system, &x), [1, 3, 2, 0]);
         // What is worn further in comes first, wherever it is.
         let layer = |sheet: usize| if sheet == 0 { 0 } else { 1 };
-        system.self_contact.as_mut().unwrap().order = (0..x.len()).map(|i| layer(i / NODES)).collect();
+        system.get_mut::<SelfContact>().unwrap().order = (0..x.len()).map(|i| layer(i / NODES)).collect();
         assert_eq!(order(&system, &x), [0, 1, 3, 2]);
     });
 }
@@ -75,11 +76,8 @@ fn cloths_come_from_the_innermost_outwards() {
 #[test]
 fn what_hangs_together_by_thread_is_one_cloth() {
     with_system(&shuffled(&[0, 1, 2]), |mut system, _, x| {
-        system.seam_forces = vec![crate::statics::forces::seam_force::SeamForce {
-            nodes: [0, 2 * NODES as u32],
-            force: 1.0,
-            softening: 1e-3,
-        }];
+        let nodes = [0, 2 * NODES as u32];
+        system.set_seam_forces(vec![SeamForce { nodes, force: 1.0, softening: 1e-3 }]);
         assert_eq!(cloths(&system).1, 2);
         // Sheet 1 lies lower than the middle of the other two, and comes first only where that is
         // so.

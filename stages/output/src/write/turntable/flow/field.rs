@@ -5,13 +5,13 @@ pub(super) type Vector = [i32; 2];
 
 /// Blocks row by row; none where nothing is seen.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Field {
+pub(super) struct FlowField {
     pub(super) columns: usize,
     pub(super) rows: usize,
     pub(super) vectors: Vec<Option<Vector>>,
 }
 
-impl Field {
+impl FlowField {
     /// Known vectors of a block and of the eight around it.
     pub(super) fn near(&self, column: usize, row: usize) -> impl Iterator<Item = Vector> + '_ {
         let columns = column.saturating_sub(1)..(column + 2).min(self.columns);
@@ -20,13 +20,13 @@ impl Field {
     }
 
     /// Every known vector as the median, by component, of the known ones near it.
-    pub(super) fn calmed(&self) -> Field {
+    pub(super) fn calmed(&self) -> FlowField {
         let calm = |k: usize| {
             self.vectors[k]?;
             let near: Vec<Vector> = self.near(k % self.columns, k / self.columns).collect();
             Some([0, 1].map(|c| median(near.iter().map(|v| v[c]).collect())))
         };
-        Field { vectors: (0..self.vectors.len()).map(calm).collect(), ..*self }
+        FlowField { vectors: (0..self.vectors.len()).map(calm).collect(), ..*self }
     }
 
     /// The vectors carried on, ring by ring, to the blocks that have none; zero where no block has
@@ -59,8 +59,8 @@ fn mean(vectors: impl Iterator<Item = Vector>) -> Option<Vector> {
 mod tests {
     use super::*;
 
-    fn field(vectors: [Option<Vector>; 6]) -> Field {
-        Field { columns: 3, rows: 2, vectors: vectors.to_vec() }
+    fn field(vectors: [Option<Vector>; 6]) -> FlowField {
+        FlowField { columns: 3, rows: 2, vectors: vectors.to_vec() }
     }
 
     #[test]
@@ -73,6 +73,6 @@ mod tests {
     fn vectors_are_carried_on_and_an_empty_field_is_zero() {
         assert_eq!(field([Some([8, 2]), None, None, None, None, None]).whole(), [[8, 2]; 6]);
         assert_eq!(field([None; 6]).whole(), [[0, 0]; 6]);
-        assert_eq!(Field { columns: 0, rows: 0, vectors: Vec::new() }.whole(), [[0, 0]; 0]);
+        assert_eq!(FlowField { columns: 0, rows: 0, vectors: Vec::new() }.whole(), [[0, 0]; 0]);
     }
 }

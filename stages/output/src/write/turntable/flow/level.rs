@@ -9,16 +9,16 @@ const GREY: i32 = 128;
 
 /// One picture: brightness and coverage of each pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Level {
+pub(super) struct FlowLevel {
     pub(super) width: usize,
     pub(super) height: usize,
     pixels: Vec<[u8; 2]>,
 }
 
-impl Level {
-    fn of(view: &RgbaImage) -> Level {
+impl FlowLevel {
+    fn of(view: &RgbaImage) -> FlowLevel {
         let (width, height) = view.dimensions();
-        Level {
+        FlowLevel {
             width: width as usize,
             height: height as usize,
             pixels: view.pixels().map(|p| read(p.0)).collect(),
@@ -26,14 +26,14 @@ impl Level {
     }
 
     /// Means of two by two pixels; an odd last row or column counts twice.
-    fn half(&self) -> Level {
+    fn half(&self) -> FlowLevel {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mean = |x: usize, y: usize| {
             let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| self.clamped(2 * x + i, 2 * y + j));
             [0, 1].map(|c| ((corners.iter().map(|p| u32::from(p[c])).sum::<u32>() + 2) / 4) as u8)
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y));
-        Level { width, height, pixels: pixels.collect() }
+        FlowLevel { width, height, pixels: pixels.collect() }
     }
 
     fn clamped(&self, x: usize, y: usize) -> [u8; 2] {
@@ -68,11 +68,11 @@ fn read([r, g, b, a]: [u8; 4]) -> [u8; 2] {
 
 /// The view itself, then its reductions.
 #[derive(Debug)]
-pub(super) struct Pyramid(pub(super) Vec<Level>);
+pub(super) struct Pyramid(pub(super) Vec<FlowLevel>);
 
 impl Pyramid {
     pub(super) fn of(view: &RgbaImage) -> Pyramid {
-        let mut levels = vec![Level::of(view)];
+        let mut levels = vec![FlowLevel::of(view)];
         while let Some(last) = levels.last().filter(|l| l.height > LOWEST) {
             levels.push(last.half());
         }
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn rows_go_on_beyond_the_border() {
         let view = RgbaImage::from_fn(4, 2, |x, y| Rgba([x as u8 + 10 * y as u8; 4].map(|v| v.max(1))));
-        let level = Level::of(&view);
+        let level = FlowLevel::of(&view);
         let mut out = [[0; 2]; 6];
         level.row(-3, -1, &mut out);
         assert_eq!(out.map(|p| p[1]), [1, 1, 1, 2, 3, 3]);

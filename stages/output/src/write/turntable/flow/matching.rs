@@ -7,8 +7,8 @@
 //! sums. Limit: motion of an eighth of the picture's height. Integers alone: the same bits on every
 //! machine.
 
-use super::field::{Field, Vector};
-use super::level::{Level, Pyramid};
+use super::field::{FlowField, Vector};
+use super::level::{FlowLevel, Pyramid};
 use std::ops::Range;
 use toile_core::{Context, StageError};
 
@@ -36,43 +36,43 @@ const STEPS: usize = 3;
 ///
 /// # Errors
 /// When the run has been stopped.
-pub(super) fn motion(from: &Pyramid, to: &Pyramid, cx: &Context) -> Result<Field, StageError> {
-    let mut coarser: Option<Field> = None;
+pub(super) fn motion(from: &Pyramid, to: &Pyramid, cx: &Context) -> Result<FlowField, StageError> {
+    let mut coarser: Option<FlowField> = None;
     for (k, pair) in from.0.iter().zip(&to.0).enumerate().rev() {
-        let search = Search { from: pair.0, to: pair.1, side: if k == 0 { BLOCK } else { SMALL } };
+        let search = BlockSearch { from: pair.0, to: pair.1, side: if k == 0 { BLOCK } else { SMALL } };
         coarser = Some(search.level(coarser.as_ref(), k == 0, cx)?.calmed());
     }
-    Ok(coarser.unwrap_or(Field { columns: 0, rows: 0, vectors: Vec::new() }))
+    Ok(coarser.unwrap_or(FlowField { columns: 0, rows: 0, vectors: Vec::new() }))
 }
 
 /// Blocks of one level.
-struct Search<'a> {
-    from: &'a Level,
-    to: &'a Level,
+struct BlockSearch<'a> {
+    from: &'a FlowLevel,
+    to: &'a FlowLevel,
     side: usize,
 }
 
 /// A block with what is around it, and the vector it is expected to have.
-struct Block {
+struct PictureBlock {
     x: Range<usize>,
     y: Range<usize>,
     expected: Vector,
     pixels: Vec<[u8; 2]>,
 }
 
-impl Search<'_> {
-    fn level(&self, coarser: Option<&Field>, last: bool, cx: &Context) -> Result<Field, StageError> {
+impl BlockSearch<'_> {
+    fn level(&self, coarser: Option<&FlowField>, last: bool, cx: &Context) -> Result<FlowField, StageError> {
         let (columns, rows) = (self.from.width.div_ceil(self.side), self.from.height.div_ceil(self.side));
         let mut vectors = Vec::with_capacity(columns * rows);
         for row in 0..rows {
             cx.check()?;
             vectors.extend((0..columns).map(|column| self.one(column, row, coarser, last)));
         }
-        Ok(Field { columns, rows, vectors })
+        Ok(FlowField { columns, rows, vectors })
     }
 
     /// One block's vector, in parts of a pixel on the last level.
-    fn one(&self, column: usize, row: usize, coarser: Option<&Field>, last: bool) -> Option<Vector> {
+    fn one(&self, column: usize, row: usize, coarser: Option<&FlowField>, last: bool) -> Option<Vector> {
         let (x, y) = (column * self.side, row * self.side);
         if !self.from.shows(x..x + self.side, y..y + self.side) {
             return None;
@@ -84,7 +84,7 @@ impl Search<'_> {
         Some(if last { self.between(&self.block(x, y, best), best) } else { best })
     }
 
-    fn block(&self, x: usize, y: usize, expected: Vector) -> Block {
+    fn block(&self, x: usize, y: usize, expected: Vector) -> PictureBlock {
         let around = self.side / AROUND;
         let (x, end) = (x.saturating_sub(around), (x + self.side + around).min(self.from.width));
         let (y, bottom) = (y.saturating_sub(around), (y + self.side + around).min(self.from.height));
@@ -92,18 +92,18 @@ impl Search<'_> {
         for (line, y) in pixels.chunks_exact_mut(end - x).zip(y as i32..) {
             self.from.row(y, x as i32, line);
         }
-        Block { x: x..end, y: y..bottom, expected, pixels }
+        PictureBlock { x: x..end, y: y..bottom, expected, pixels }
     }
 
     /// The best of all vectors within reach.
-    fn everywhere(&self, block: &Block) -> Vector {
+    fn everywhere(&self, block: &PictureBlock) -> Vector {
         let reach = (self.from.height / REACH).max(1) as i32;
         self.best(block, [0, 0], within([0, 0], reach))
     }
 
     /// The best of the coarser level's vectors near a block and of those around its own, then of
     /// what is a few pixels from that.
-    fn near(&self, x: usize, y: usize, coarser: &Field) -> Vector {
+    fn near(&self, x: usize, y: usize, coarser: &FlowField) -> Vector {
         // The picture and its half have the same blocks; on a further reduction a block is twice as
         // wide, which is as many px.
         let (column, row) = (x / BLOCK, y / BLOCK);
@@ -124,7 +124,7 @@ impl Search<'_> {
     }
 
     /// The first of the cheapest vectors, the given one before all others.
-    fn best(&self, block: &Block, first: Vector, others: impl Iterator<Item = Vector>) -> Vector {
+    fn best(&self, block: &PictureBlock, first: Vector, others: impl Iterator<Item = Vector>) -> Vector {
         let mut least = (self.cost(block, first, u32::MAX), first);
         for v in others {
             let cost = self.cost(block, v, least.0);
@@ -137,7 +137,7 @@ impl Search<'_> {
 
     /// The sum of absolute differences of brightness and coverage, and what leaving the expected
     /// vector costs. Summed only while it is below `most`.
-    fn cost(&self, block: &Block, v: Vector, most: u32) -> u32 {
+    fn cost(&self, block: &PictureBlock, v: Vector, most: u32) -> u32 {
         let off = v[0].abs_diff(block.expected[0]) + v[1].abs_diff(block.expected[1]);
         let mut sum = off * block.pixels.len() as u32 / STIFFNESS;
         let mut buffer = [[0; 2]; WINDOW];
@@ -153,7 +153,7 @@ impl Search<'_> {
     }
 
     /// A vector in parts of a pixel, where the differences do not vanish already.
-    fn between(&self, block: &Block, [x, y]: Vector) -> Vector {
+    fn between(&self, block: &PictureBlock, [x, y]: Vector) -> Vector {
         let cost = |v| self.cost(block, v, u32::MAX);
         let middle = cost([x, y]);
         let part = |before, after| if middle == 0 { 0 } else { fit(before, middle, after) };

@@ -27,7 +27,7 @@ fn patch(x: i32, y: i32) -> u8 {
     ((n ^ n >> 13) % 61) as u8
 }
 
-fn between(a: &RgbaImage, b: &RgbaImage) -> Field {
+fn between(a: &RgbaImage, b: &RgbaImage) -> FlowField {
     motion(&Pyramid::of(a), &Pyramid::of(b), &Context::quiet()).unwrap()
 }
 

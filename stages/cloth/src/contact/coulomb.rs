@@ -1,5 +1,5 @@
 //! Regularised Coulomb friction of one point, as a potential of its tangential displacement from an
-//! anchor.
+//! anchor, and what it keeps from step to step.
 //!
 //! The potential is `limit * tol * (sqrt(1 + (s / tol)^2) - 1)` of the tangential displacement `s`,
 //! with the slip tolerance `tol`: a spring at small displacements, whose force approaches Coulomb's
@@ -12,11 +12,42 @@ type Vec3 = Vector3<f64>;
 
 /// Distance at which a sliding point drags its anchor behind it, in slip tolerances. Friction is
 /// then half of its limit, so that a sliding point can stop.
-const SLIP_RETURN: f64 = 0.577;
+pub(crate) const SLIP_RETURN: f64 = 0.577;
 
 /// Slip tolerance: the tangential displacement at which friction is 0.7 of its limit, m. A longer
 /// one converges sooner, but cloth creeps farther before it holds.
-pub(crate) const SLIP_TOLERANCE: f64 = 1e-4;
+const SLIP_TOLERANCE: f64 = 1e-4;
+
+/// What friction at one point keeps from step to step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionMemory {
+    /// Where friction holds the point, m.
+    pub anchor: Vec3,
+    /// The normal force that limits friction, a mean over the last steps, N.
+    pub load: f64,
+}
+
+impl FrictionMemory {
+    /// The load of a contact that presses with `force` now. Contact may alternate from step to
+    /// step, so the limit of friction is a mean.
+    pub(crate) fn mean_load(&self, force: f64) -> f64 {
+        0.5 * (self.load + force)
+    }
+
+    /// The friction on a surface with that normal and coefficient.
+    pub(crate) fn coulomb(&self, normal: Vec3, coefficient: f64) -> Coulomb {
+        Coulomb { normal, anchor: self.anchor, limit: coefficient * self.load }
+    }
+
+    /// Drags the anchor along if the point at `p` has slid farther than the slip tolerance since
+    /// the start of the step, when its displacement was `slid`. A contact that holds beside sliding
+    /// cloth goes on holding.
+    pub(crate) fn drag(&mut self, friction: &Coulomb, p: &Vec3, slid: &Vec3) {
+        if (friction.displacement(p) - slid).norm() > SLIP_TOLERANCE {
+            self.anchor = friction.dragged(p);
+        }
+    }
+}
 
 /// A point held near its anchor.
 pub(crate) struct Coulomb {
@@ -65,4 +96,14 @@ impl Coulomb {
         let r = along.norm();
         if r <= SLIP_RETURN { self.anchor } else { p - along * (SLIP_TOLERANCE * SLIP_RETURN / r) }
     }
+}
+
+/// The mean of displacements, weighted by their loads; zero without load.
+pub(crate) fn mean_by_load(all: impl Iterator<Item = (Vec3, f64)>) -> Vec3 {
+    let (mut sum, mut load) = (Vec3::zeros(), 0.0);
+    for (displacement, own) in all {
+        sum += displacement * own;
+        load += own;
+    }
+    if load > 0.0 { sum / load } else { sum }
 }
