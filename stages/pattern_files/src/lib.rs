@@ -5,6 +5,7 @@
 //! stand in a file beside it, by the names that the file's reader will give.
 
 pub mod allowance;
+mod drawing;
 pub mod dxf;
 mod error;
 mod flatten;

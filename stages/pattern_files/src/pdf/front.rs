@@ -1,10 +1,11 @@
 //! The first page: a square to measure, what the lines mean, how the pages are joined. And the
 //! sheet in one piece.
 
-use super::canvas::{Canvas, Hold, SHEET, Style, Type};
-use super::sheet::{CUT, DOTTED, FOLD, SEW, Sheet, THIN};
+use super::canvas::{Canvas, SHEET};
+use super::sheet::Sheet;
 use super::tiles::{OVERLAP, Tiles};
 use super::{Page, Paper};
+use crate::drawing::{CUT, DOTTED, DrawingSurface, FOLD, Hold, SEW, Style, THIN, Type};
 use crate::font::{shortened, wrapped};
 use crate::options::Options;
 use toile_core::artifact::Pattern;

@@ -1,8 +1,9 @@
 //! The pages with what is cut and in what order it is sewn.
 
-use super::canvas::{Canvas, Hold, Style, Type};
+use super::canvas::Canvas;
 use super::front::MARGIN;
-use super::sheet::{Sheet, allowance};
+use super::sheet::Sheet;
+use crate::drawing::{DrawingSurface, Hold, Style, Type, allowance};
 use crate::font::wrapped;
 use toile_core::artifact::{EdgeUse, Pattern, PatternSeam, SeamKind};
 

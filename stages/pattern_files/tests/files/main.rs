@@ -3,6 +3,7 @@
 
 mod common;
 mod fuzz;
+mod pages;
 mod programs;
 mod pygarment;
 mod real;

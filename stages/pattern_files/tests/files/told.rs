@@ -57,7 +57,7 @@ fn more_paper_than_there_is_is_refused() {
         two_sided(to_pdf(&large, Paper::A4, &options).unwrap_err()),
         (
             "the pieces need 1734 pages, 500 are the most".into(),
-            "write fewer pieces at a time, or in one piece"
+            "write fewer pieces at a time, on larger pages, or in one piece"
         )
     );
     assert_eq!(
