@@ -1,4 +1,4 @@
-//! Sewing patterns as files: GarmentCode JSON, SVG, DXF and PDF.
+//! Sewing patterns as files: GarmentCode JSON, SVG, DXF, PDF and HP-GL.
 //!
 //! Every writer is a function of a pattern, and of options, to the bytes of a file. The same
 //! pattern gives the same bytes each time. What a file cannot hold is told in sentences; seams
@@ -18,6 +18,7 @@ mod names;
 mod options;
 mod parts;
 pub mod pdf;
+pub mod plt;
 mod shelf;
 mod sidecar;
 pub mod svg;

@@ -4,6 +4,7 @@
 mod common;
 mod fuzz;
 mod pages;
+mod plots;
 mod programs;
 mod pygarment;
 mod real;

@@ -1,11 +1,13 @@
 //! What is refused and what is told, word for word.
 
 use crate::common::*;
+use crate::plots::plot;
 use toile_core::artifact::*;
 use toile_pattern_files::allowance::Allowances;
 use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::pdf::{Paper, to_pdf};
+use toile_pattern_files::plt::to_plt;
 use toile_pattern_files::svg::to_svg;
 use toile_pattern_files::{Options, WriteError, sidecar};
 
@@ -21,6 +23,7 @@ fn what_no_format_holds_is_refused_by_all() {
             to_svg(pattern, &Options::default()).unwrap_err(),
             to_dxf(pattern, Standard::Aama, &Options::default()).unwrap_err(),
             to_pdf(pattern, Paper::A4, &Options::default()).unwrap_err(),
+            to_plt(pattern, &plot(), &Options::default()).unwrap_err(),
         ];
         assert!(errors.iter().all(|e| *e == errors[0]));
         two_sided(errors[0].clone())
