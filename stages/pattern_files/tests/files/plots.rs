@@ -55,12 +55,12 @@ pub(crate) fn read_plt(bytes: &[u8]) -> Vec<Vec<PenLine>> {
     for instruction in text.split(';').map(str::trim).filter(|i| !i.is_empty()) {
         let (name, values) = instruction.split_at(2);
         let numbers: Vec<f64> = values.split(',').filter_map(|v| v.parse().ok()).collect();
-        let pairs = numbers.chunks_exact(2).map(|c| [c[0] as i64, c[1] as i64]);
+        let mut pairs = numbers.chunks_exact(2).map(|c| [c[0] as i64, c[1] as i64]);
         match name {
             "IN" | "PA" | "BP" | "PS" | "PW" => {}
             "SP" => pen = numbers[0] as u32,
             "PU" => {
-                at = pairs.last().unwrap_or(at);
+                at = pairs.next_back().unwrap_or(at);
                 is_down = false;
             }
             "PD" => {
