@@ -132,9 +132,8 @@ impl FileReader {
             Some("sm2d" | "val") => SeamlyPattern { file, seams, ..SeamlyPattern::default() }.run(&cx)?.0,
             _ => {
                 let what = format!("\"{file}\" is no pattern by its name");
-                return Err(
-                    unreadable(what).hint("name a pattern of GarmentCode (.json), a .dxf, .svg, .sm2d or .val file")
-                );
+                return Err(unreadable(what)
+                    .hint("name a pattern of GarmentCode (.json), a .dxf, .svg, .sm2d or .val file"));
             }
         };
         let told = cx.take_remarks();
