@@ -9,6 +9,10 @@ use kurbo::Point;
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Strokes of curves that all tools and pieces together are made of: a small file can ask for any
+/// number of them.
+const MOST_STROKES: usize = 100_000;
+
 /// A tool of the file.
 pub(crate) struct DraftTool<'a, 't> {
     pub(crate) node: Node<'a, 't>,
@@ -47,9 +51,18 @@ pub(crate) struct Drafting {
     pub(crate) warnings: Vec<String>,
     /// Pairs of boxes that have been looked at to find where curves cross.
     pub(crate) boxes: usize,
+    /// Strokes of curves that tools and pieces have asked for.
+    strokes: usize,
+    /// The fault of the first that asked for too many.
+    spent: Option<Failed>,
 }
 
 impl Drafting {
+    /// A draft with nothing drawn.
+    pub(crate) fn of(values: DraftValues) -> Self {
+        Drafting { values, ..Drafting::default() }
+    }
+
     pub(crate) fn fail(&mut self, fault: SeamlyFault) -> Failed {
         self.values.fail(fault)
     }
@@ -126,12 +139,34 @@ impl Drafting {
     ) -> Result<DraftObject, Failed> {
         match self.objects.get(&id) {
             Some(DraftObject::Failed(why)) => Err(*why),
-            Some(object) => Ok(object.clone()),
+            Some(object) => {
+                let object = object.clone();
+                self.count(&object)?;
+                Ok(object)
+            }
             None => {
                 let (place, attribute, later) = (place.clone(), name.to_owned(), self.ids.contains(&id));
                 Err(self.fail(SeamlyFault::Reference { place, attribute, id, later }))
             }
         }
+    }
+
+    /// Counts the strokes of an object that is asked for.
+    fn count(&mut self, object: &DraftObject) -> Result<(), Failed> {
+        if let DraftObject::Curve(drawn) = object {
+            self.strokes += drawn.curve.strokes.len();
+        }
+        if self.strokes <= MOST_STROKES {
+            return Ok(());
+        }
+        let why = match self.spent {
+            Some(why) => why,
+            None => {
+                self.fail(SeamlyFault::Many { what: "curves in its tools and pieces", most: MOST_STROKES })
+            }
+        };
+        self.spent = Some(why);
+        Err(why)
     }
 
     fn wrong_kind(&mut self, place: &ToolPlace, name: &str, id: u32, expected: &'static str) -> Failed {

@@ -37,7 +37,7 @@ pub(crate) fn block_name<'a>(block: Node<'a, '_>) -> &'a str {
 ///
 /// Errors: more tools than are read; what is wrong with a tool is kept with the values.
 pub(crate) fn drawn(root: Node<'_, '_>, values: DraftValues) -> Result<Drafting, SeamlyFault> {
-    let mut draft = Drafting { values, ..Drafting::default() };
+    let mut draft = Drafting::of(values);
     let tools = |block| children(block, &["calculation"]).flat_map(|n| n.children().filter(Node::is_element));
     for (k, node) in children(root, BLOCKS).flat_map(tools).enumerate() {
         if k == MOST_TOOLS {

@@ -358,3 +358,16 @@ fn increments_in_a_ring_and_what_follows_from_a_fault_are_told_once() {
         <point id="52" name="V" type="endLine" basePoint="1" angle="0" length="Line_A_U + #a"/>"##;
     assert_eq!(faults(tools, head), ["increment \"#b\" (line 1): \"#a\" needs itself, by way of \"#b\""]);
 }
+
+#[test]
+fn more_curves_than_are_worked_out_are_refused_once() {
+    let items = |id: u32| format!("<item idObject=\"{id}\"/>").repeat(100_001);
+    let tools = format!(
+        "<arc id=\"50\" type=\"simple\" center=\"1\" radius=\"2\" angle1=\"0\" angle2=\"90\"/>\
+         <operation id=\"51\" type=\"moving\" angle=\"0\" length=\"1\" suffix=\"a\"><source>{}</source>\
+         <destination>{}</destination></operation>",
+        items(50),
+        items(52)
+    );
+    assert_eq!(faults(&tools, ""), ["it has more than 100000 curves in its tools and pieces"]);
+}

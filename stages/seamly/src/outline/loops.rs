@@ -4,8 +4,8 @@
 //! follows, an outline crosses itself or runs back on itself. Seamly2D and Valentina cut such loops
 //! off when they lay a piece out; so does this, up to a share of the outline. Method: every two
 //! parts are tested for crossings; of the two ways around a crossing the shorter is left out, and
-//! the search begins again. Cost: parts squared. Limits: [`MOST`] loops; one part that crosses
-//! itself is not seen.
+//! the search begins again. Cost: parts squared. Limits: [`MOST`] loops; outlines of more than
+//! [`MOST_LINKS`] parts are left as they are; one part that crosses itself is not seen.
 
 use super::super::plane::{DraftCurve, DraftStroke, crossings};
 use super::path::{DraftedPath, Nearness, OutlinePart};
@@ -13,6 +13,8 @@ use kurbo::{CubicBez, Point, Rect};
 
 /// Loops of one outline.
 const MOST: usize = 40;
+/// Parts of an outline that is searched.
+const MOST_LINKS: usize = 2000;
 /// Loops of up to this share of the outline are left out.
 const SHARE: f64 = 0.03;
 /// Cosine of the angle between two parts that run back on each other.
@@ -47,6 +49,9 @@ impl Link {
 
 /// Takes small loops out of a closed path; the lengths of those that were taken.
 pub(super) fn without_loops(path: &mut DraftedPath, near: Nearness, boxes: &mut usize) -> Vec<f64> {
+    if path.parts.len() > MOST_LINKS {
+        return Vec::new();
+    }
     let mut links = links(path);
     let most = SHARE * links.iter().map(Link::length).sum::<f64>();
     let mut taken = Vec::new();
