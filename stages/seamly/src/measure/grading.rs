@@ -84,15 +84,13 @@ impl Grading {
         Ok(Some(Grading(all)))
     }
 
-    /// The value of a measurement, as a formula.
+    /// The value of a measurement, as a formula; none where its base or its growth is no number.
     pub(super) fn value(&self, m: Node<'_, '_>) -> Option<String> {
-        let base = figure(m, "base")?;
-        let grown = |d: &Dimension| match d.step > 0.0 {
-            true => (d.chosen - d.base) / d.step * figure(m, d.growth).unwrap_or(0.0),
-            false => 0.0,
-        };
-        let value: f64 = base + self.0.iter().map(grown).sum::<f64>() + self.correction(m);
-        Some(format!("{value}"))
+        let mut value = figure(m, "base")?;
+        for d in self.0.iter().filter(|d| d.step > 0.0 && attribute(m, d.growth).is_some()) {
+            value += (d.chosen - d.base) / d.step * figure(m, d.growth)?;
+        }
+        Some(format!("{}", value + self.correction(m)))
     }
 
     /// What is added for the size itself.

@@ -72,14 +72,28 @@ impl MeasurementTable {
         let grade = Grade { kept, ..grade };
         let mut table = MeasurementTable { scale: own.in_units_of(unit), ..MeasurementTable::default() };
         let grading = Grading::of(root, own, grade, &mut table.notes)?;
+        let mut left_out = Vec::new();
         for m in all {
             let formula = match &grading {
                 Some(grading) => grading.value(m),
                 None => attribute(m, "value").map(str::to_owned),
             };
-            let (Some(name), Some(formula)) = (attribute(m, "name"), formula) else { continue };
+            let Some(name) = attribute(m, "name") else { continue };
+            let Some(formula) = formula else {
+                // One without a value was not taken, as most are.
+                if attribute(m, "base").is_some() {
+                    left_out.push(format!("\"{}\"", short(name)));
+                }
+                continue;
+            };
             let is_length = says(m, "specialUnits") != Some(true);
             table.entries.insert(name.to_owned(), Entry { formula, is_length, value: None });
+        }
+        if !left_out.is_empty() {
+            table.notes.push(format!(
+                "measurements whose base or growth is no number are left out: {}",
+                left_out.join(", ")
+            ));
         }
         for (name, value) in grading.iter().flat_map(Grading::names) {
             let entry = Entry { formula: value.to_string(), is_length: true, value: None };

@@ -105,3 +105,17 @@ fn files_of_something_else_are_refused() {
     );
     assert!(refused("<smis").starts_with("it is no XML at line 1 column "));
 }
+
+#[test]
+fn measurements_that_are_no_numbers_are_told() {
+    let text = SIZES.replace(
+        "<body-measurements>",
+        "<body-measurements><m name=\"neck\" base=\"wide\"/><m name=\"arm\" base=\"60\" size_increase=\"a bit\"/>\
+         <m name=\"none\"/>",
+    );
+    let table = table(&text, Grade::default(), LengthUnit::Centimetre);
+    assert_eq!(
+        table.notes[1..],
+        ["measurements whose base or growth is no number are left out: \"neck\", \"arm\""]
+    );
+}
