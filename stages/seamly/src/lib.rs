@@ -25,7 +25,7 @@ mod unit;
 pub use fault::{SeamlyFault, ToolPlace};
 pub use head::PatternHead;
 pub use measure::{Grade, MeasurementTable};
-pub use outline::{DraftedPath, DraftedPiece, InnerPath, OutlinePart, PieceFold};
+pub use outline::{DraftedPath, DraftedPiece, InnerPath, NodeAllowance, OutlinePart, PieceFold};
 pub use plane::{DraftArc, DraftStroke};
 pub use unit::LengthUnit;
 

@@ -2,15 +2,19 @@
 //! drawn on them.
 //!
 //! A piece's nodes name objects of the block's modeling, which stand for those of the draft
-//! ([`model`]); [`path`] joins them, [`piece`] reads the rest.
+//! ([`model`]); [`path`] joins them, [`piece`] reads the rest, [`allowance`] the widths of seam
+//! allowances; [`unread`] names what is not read.
 
+mod allowance;
 mod loops;
 mod model;
 mod path;
 mod piece;
 #[cfg(test)]
 mod tests;
+mod unread;
 
+pub use allowance::NodeAllowance;
 pub use path::{DraftedPath, OutlinePart};
 pub use piece::{DraftedPiece, InnerPath, PieceFold};
 
@@ -20,6 +24,7 @@ use super::source::{children, says};
 use model::Modeling;
 use roxmltree::Node;
 use std::collections::BTreeSet;
+use unread::Unread;
 
 /// Pieces of a file.
 const MOST_PIECES: usize = 500;
@@ -37,7 +42,7 @@ pub(crate) fn pieces(
 ) -> Result<Vec<DraftedPiece>, Vec<SeamlyFault>> {
     let model = Modeling::of(root);
     let (mut out, mut failed, mut left_out) = (Vec::new(), BTreeSet::new(), Vec::new());
-    let mut count = 0;
+    let (mut count, mut unread) = (0, Unread::default());
     for block in children(root, BLOCKS) {
         let listed = children(block, &["pieces", "details"]).flat_map(|n| children(n, &["piece", "detail"]));
         for node in listed {
@@ -52,6 +57,7 @@ pub(crate) fn pieces(
                 left_out.push(format!("\"{}\"", piece::name(node)));
                 continue;
             }
+            unread.look(node, &piece::name(node), &piece::path_nodes(node));
             match piece::piece(node, block_name(block), &model, draft, metres) {
                 Ok(piece) => out.push(piece),
                 Err(Failed(why)) => {
@@ -64,6 +70,7 @@ pub(crate) fn pieces(
     if !left_out.is_empty() {
         notes.push(format!("pieces that are not laid out are left out: {}", left_out.join(", ")));
     }
+    notes.extend(unread.told());
     if !failed.is_empty() {
         return Err(failed.into_iter().filter_map(|k| draft.values.faults.get(k).cloned()).collect());
     }

@@ -1,9 +1,10 @@
 //! A piece of the pattern: its outline, and what is drawn on it.
 
-use super::super::draft::{Asked, DraftObject, DraftTool, Drafting, Failed};
+use super::super::draft::{DraftObject, DraftTool, Drafting, Failed};
 use super::super::fault::{SeamlyFault, ToolPlace};
 use super::super::plane::direction;
 use super::super::source::{attribute, children, line, number, says, short};
+use super::allowance::{self, NodeAllowance};
 use super::loops::without_loops;
 use super::model::Modeling;
 use super::path::{DraftedPath, Nearness, OutlinePart, PathNode, joined};
@@ -63,6 +64,8 @@ pub struct DraftedPiece {
     pub turns: bool,
     /// The width of its seam allowance, where it has one.
     pub allowance: Option<f64>,
+    /// Other widths of it, at nodes.
+    pub node_allowances: Vec<NodeAllowance>,
     /// Whether the outline is the line along which it is cut, the seam allowance within it.
     pub built_in: bool,
 }
@@ -101,7 +104,11 @@ pub(super) fn piece(
         None if on_fold => PieceFold::Unsaid,
         None => PieceFold::None,
     };
-    let allowance = reader.allowance(node);
+    let allowance = allowance::of_piece(node, &place, reader.draft);
+    let node_allowances = match allowance {
+        Some(own) => reader.node_allowances(&nodes, own)?,
+        None => Vec::new(),
+    };
     Ok(DraftedPiece {
         name: name(node),
         outline,
@@ -112,13 +119,14 @@ pub(super) fn piece(
         quantity,
         turns: says(node, "forbidFlipping") != Some(true),
         allowance,
+        node_allowances,
         built_in: says(node, "seamAllowanceBuiltIn") == Some(true),
         place,
     })
 }
 
 /// The nodes of a piece or of a path that are not left out; older pieces have them without a list.
-fn path_nodes<'a, 't: 'a>(of: Node<'a, 't>) -> Vec<Node<'a, 't>> {
+pub(super) fn path_nodes<'a, 't: 'a>(of: Node<'a, 't>) -> Vec<Node<'a, 't>> {
     let listed = children(of, &["nodes"]).flat_map(|n| children(n, &["node"]));
     listed.chain(children(of, &["node"])).filter(|n| says(*n, "excluded") != Some(true)).collect()
 }
@@ -235,7 +243,10 @@ impl Reader<'_, '_, '_> {
         let ids: Vec<u32> = records.filter_map(|n| number(n, "path")).collect();
         let mut out = Vec::new();
         for id in ids {
-            let Some(node) = self.model.paths.get(&id).copied() else { continue };
+            let Some(node) = self.model.paths.get(&id).copied() else {
+                let (place, attribute) = (self.place.clone(), "path".to_owned());
+                return Err(self.draft.fail(SeamlyFault::Reference { place, attribute, id, later: false }));
+            };
             if let Some(path) = self.path(&path_nodes(node), false)? {
                 out.push(InnerPath { name: name(node), cut: says(node, "cut") == Some(true), path });
             }
@@ -271,11 +282,17 @@ impl Reader<'_, '_, '_> {
         Ok(Some([self.point(a)?.1, self.point(b)?.1]))
     }
 
-    /// The width of the seam allowance, as far as it can be worked out.
-    fn allowance(&mut self, node: Node<'_, '_>) -> Option<f64> {
-        let has = says(node, "seamAllowance").or_else(|| says(node, "supplement"));
-        let formula = attribute(node, "width").filter(|_| has == Some(true))?;
-        let asked = Asked { place: self.place, attribute: "width", formula };
-        self.draft.values.value(asked).ok().filter(|width| *width > 0.0)
+    /// The widths of seam allowances at nodes that have others than that of the piece.
+    fn node_allowances(&mut self, nodes: &[Node<'_, '_>], own: f64) -> Result<Vec<NodeAllowance>, Failed> {
+        let mut out = Vec::new();
+        for node in nodes.iter().filter(|n| attribute(**n, "type") == Some("NodePoint")) {
+            if attribute(*node, "before").is_none() && attribute(*node, "after").is_none() {
+                continue;
+            }
+            let Some(id) = number(*node, "idObject") else { continue };
+            let (_, at) = self.point(id)?;
+            out.extend(allowance::of_node(*node, at, own, self.place, self.draft));
+        }
+        Ok(out)
     }
 }

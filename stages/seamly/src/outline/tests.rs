@@ -135,6 +135,20 @@ fn pieces_that_are_not_laid_out_are_left_out() {
 }
 
 #[test]
+fn what_is_not_read_of_pieces_is_named() {
+    let nodes = NODES.replace("notch=\"true\"", "notch=\"true\" notchLength=\"0.5\" angle=\"2\"");
+    let piece = format!(
+        r#"<piece id="40" name="Front"><data letter="A" visible="true"/><csa/><pins><record>11</record></pins><glue size="1"/>{nodes}</piece>"#
+    );
+    assert_eq!(
+        read(&piece, "").unwrap().notes,
+        [
+            "left out: corners of seam allowances of \"Front\"; depth and form of notches of \"Front\"; elements \"glue\" of \"Front\"; labels of \"Front\"; pins of \"Front\""
+        ]
+    );
+}
+
+#[test]
 fn faults_name_the_piece() {
     let faults = |piece: &str, more: &str| {
         let all = read(piece, more).unwrap_err();
@@ -150,6 +164,11 @@ fn faults_name_the_piece() {
     assert_eq!(
         faults(&format!("<piece id=\"40\" name=\"Front\">{unknown}</piece>"), ""),
         "block \"front\", piece \"Front\" (line 14): its \"idObject\" is object 99, which there is none of"
+    );
+    let lost = format!(r#"<piece id="40" name="Front">{NODES}<iPaths><record path="31"/></iPaths></piece>"#);
+    assert_eq!(
+        faults(&lost, ""),
+        "block \"front\", piece \"Front\" (line 14): its \"path\" is object 31, which there is none of"
     );
     let union = r#"<tools id="50" type="unionDetails"><children><nodes><child>60</child></nodes></children></tools>
         <point id="61" idObject="60" type="modeling"/>"#;
