@@ -5,6 +5,7 @@
 //! of what is drafted. A pattern has no seams: they come from a file beside it, or are proposed.
 //! Cost: some milliseconds a piece.
 
+mod allowance;
 mod damage;
 mod fold;
 mod measured;

@@ -8,6 +8,7 @@ use super::super::copies::{MOST_COPIES, copies};
 use super::super::marks::{hole, notched};
 use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
 use super::super::unfold::{Fold, image_word};
+use super::allowance;
 use super::damage::Damage;
 use super::fold::along_grain;
 use super::strokes::{label, side};
@@ -35,9 +36,10 @@ pub(super) fn pieces(
     told: &mut Remarks,
 ) -> Result<Vec<Piece>, Vec<Damage>> {
     let (mut out, mut faults, mut names): (Vec<Piece>, Vec<Damage>, BTreeSet<String>) = Default::default();
+    let mut widths = Vec::new();
     for piece in drafted {
         let name = unique(&mut names, &piece.name, "piece");
-        match (Place { piece, name: &name, metres }).piece(told) {
+        match (Place { piece, name: &name, metres }).piece(&mut widths, told) {
             Ok(one) => {
                 let (plain, turned) = cut(piece, &name, told);
                 out.extend(copies(one, plain, turned, told));
@@ -51,7 +53,7 @@ pub(super) fn pieces(
     if !faults.is_empty() {
         return Err(faults);
     }
-    allowances(drafted, metres, told);
+    allowance::tell(drafted, &widths, told);
     Ok(out)
 }
 
@@ -84,24 +86,6 @@ fn unique(names: &mut BTreeSet<String>, name: &str, otherwise: &str) -> String {
     own
 }
 
-/// Tells what is left out of seam allowances.
-fn allowances(drafted: &[DraftedPiece], metres: f64, told: &mut Remarks) {
-    let widths: Vec<String> = drafted
-        .iter()
-        .filter_map(|p| Some(format!("{:.1} mm of \"{}\"", p.allowance? * metres * 1e3, p.name)))
-        .collect();
-    if !widths.is_empty() {
-        told.notes
-            .push(format!("outlines are seam lines; seam allowances are left out: {}", widths.join(", ")));
-    }
-    for piece in drafted.iter().filter(|p| p.built_in) {
-        told.warnings.push(format!(
-            "{}: its seam allowance is within its outline, and the outline is sewn: the garment is larger by it",
-            piece.place
-        ));
-    }
-}
-
 /// A drafted piece with its name, for errors, and the length of its unit.
 struct Place<'a> {
     piece: &'a DraftedPiece,
@@ -110,11 +94,13 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    fn piece(&self, told: &mut Remarks) -> Result<Piece, Damage> {
+    /// The piece; the words for its seam allowance are added.
+    fn piece(&self, widths: &mut Vec<String>, told: &mut Remarks) -> Result<Piece, Damage> {
         let piece = self.piece;
         let turn = turn(piece.grain.map(|g| Vector2::new(g.x, g.y)));
         let up = move |p: Point2| Point2::new(turn.x * p.x - turn.y * p.y, turn.y * p.x + turn.x * p.y);
         let sides = self.sides()?;
+        widths.extend(allowance::widths(piece, &sides, self.name, self.metres));
         let mut sides: Vec<Side> = sides.iter().map(|s| s.moved(up, false)).collect();
         let point = |p: [f64; 2]| up(Point2::new(p[0] * self.metres, p[1] * self.metres));
         let mut marks = Marks::of(piece, self.metres, up, &sides);

@@ -59,7 +59,7 @@ fn the_skirt_is_drafted_to_the_measurements_that_it_names() {
     assert!((front.notches[0].along - front.notches[1].along).abs() < 0.7);
     assert!(told.notes.contains(&"the pattern says that its units are centimetres".to_owned()), "{told:?}");
     assert!(told.notes.contains(
-        &"outlines are seam lines; seam allowances are left out: 10.0 mm of \"front\", 10.0 mm of \"back\", 10.0 mm of \"waistband\""
+        &"outlines are seam lines; seam allowances are left out, give them to the writer as `seam_allowance` and `hem_allowance`: 10.0 mm of \"front\"; 10.0 mm of \"back\"; 10.0 mm of \"waistband\""
             .to_owned()
     ));
     assert_eq!(files.0.len(), 1);
@@ -225,6 +225,29 @@ fn outlines_that_cross_and_sizes_that_no_one_wears_are_refused() {
     assert!(hint.starts_with("`--set pattern.unit=Centimetres` makes it 40 cm long"), "{hint}");
     let stage = SeamlyPattern { unit: DrawingUnit::Centimetres, ..of("p.sm2d") };
     assert!(run(&[("p.sm2d", &rectangle("", "").replace("<unit>cm", "<unit>mm"))], &stage).is_ok());
+}
+
+#[test]
+fn seam_allowances_at_nodes_are_told_by_edge() {
+    let words = |first: &str, second: &str| {
+        let text = rectangle(r#"seamAllowance="true" width="1""#, "")
+            .replace(r#"idObject="1"/><node"#, &format!(r#"idObject="1" {first}/><node"#))
+            .replace(
+                r#"type="NodePoint" idObject="2"/>"#,
+                &format!(r#"type="NodePoint" idObject="2" {second}/>"#),
+            );
+        let (_, told) = one(&text);
+        let begin = "outlines are seam lines; seam allowances are left out, give them to the writer as \
+                     `seam_allowance` and `hem_allowance`: ";
+        told.notes.iter().find_map(|n| n.strip_prefix(begin)).unwrap().to_owned()
+    };
+    assert_eq!(words("", ""), "10.0 mm of \"p_1\"");
+    assert_eq!(words(r#"after="3""#, r#"before="3""#), "10.0 mm of \"p_1\", 30.0 mm at its \"A_B\"");
+    assert_eq!(
+        words(r#"after="CurrentSeamAllowance * 2" before="-1""#, r#"after="0""#),
+        "10.0 mm of \"p_1\", 20.0 to 10.0 mm at its \"A_B\", 0.0 to 10.0 mm at its \"B_C\""
+    );
+    assert_eq!(words(r#"before="CurrentSeamAllowance""#, ""), "10.0 mm of \"p_1\"");
 }
 
 #[test]
