@@ -16,7 +16,8 @@
 //! Cost: some ten milliseconds a piece. Limits: pieces are turned by right angles alone, and are
 //! not nested into each other; the origin is the lower left corner of a page, not its middle as
 //! that of large pen plotters before HP-GL/2; machines that count with 16 bits take 819 mm along
-//! and across; Latin letters, others are question marks, which is told; one size; every piece is
+//! and across, which is told; machines that lay x along the longer side of a page turn a plot that is
+//! shorter than the roll is wide; Latin letters, others are question marks, which is told; one size; every piece is
 //! cut once. Seams are numbers on edges, no program reads them back.
 
 mod instructions;
@@ -37,6 +38,8 @@ use toile_core::artifact::Pattern;
 const UNITS: [f64; 2] = [1.0, 1000.0];
 /// The greatest coordinate of HP-GL/2.
 const FARTHEST_UNIT: f64 = 8_388_607.0;
+/// That of plotters that count with 16 bits.
+const FARTHEST_OLD: f64 = 32_767.0;
 
 /// Which of the two languages is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,7 +101,8 @@ pub fn to_plt(pattern: &Pattern, plot: &Plot, options: &DrawingOptions) -> Resul
     let names = std::iter::once(&pattern.name).chain(pattern.pieces.iter().map(|p| &p.name));
     warnings.extend(unknown_letters(names, letters::holds));
     let bytes = written(pattern, plot, &pages, &mut warnings);
-    Ok(Written { bytes, seams: String::new(), notes: vec![told(plot, &pages)], warnings })
+    let notes = std::iter::once(told(plot, &pages)).chain(beyond_old(plot, &pages)).collect();
+    Ok(Written { bytes, seams: String::new(), notes, warnings })
 }
 
 /// The file; pieces that are too small to be cut are told.
@@ -122,6 +126,20 @@ fn written(pattern: &Pattern, plot: &Plot, pages: &[PlotPage], warnings: &mut Ve
         out.end_page();
     }
     out.finish()
+}
+
+/// Tells coordinates that plotters of 16 bits do not count to; those of HP-GL/2 count farther.
+fn beyond_old(plot: &Plot, pages: &[PlotPage]) -> Option<String> {
+    let pieces = pages.iter().flat_map(|p| &p.rows).flatten();
+    let points = pieces.flat_map(|p| &p.tracks).flat_map(|t| &t.points);
+    let farthest = points.flatten().fold(0.0, |most: f64, mm| most.max(*mm)) * plot.units;
+    (plot.code == PlotCode::Hpgl && farthest > FARTHEST_OLD).then(|| {
+        let mm = (FARTHEST_OLD / plot.units).floor();
+        format!(
+            "coordinates go to {farthest:.0}: a plotter that counts to {FARTHEST_OLD} needs `page_length: \"{mm} mm\"` \
+             and `width: \"{mm} mm\"`"
+        )
+    })
 }
 
 /// How long the plot is, in a sentence.

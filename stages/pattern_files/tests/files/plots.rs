@@ -199,6 +199,12 @@ fn rows_go_to_pages_and_the_language_says_how_large_they_are() {
     assert_eq!(cuts(&pages[0]), [[[0, 0], [32_000, 24_000]], [[0, 24_400], [32_000, 48_400]]]);
     assert_eq!(cuts(&pages[1]), [[[0, 0], [32_000, 24_000]]]);
     let plain = to_plt(&pattern, &Plot { code: PlotCode::Hpgl, ..plot }, &DrawingOptions::default()).unwrap();
+    assert_eq!(
+        plain.notes[1..],
+        [
+            "coordinates go to 48400: a plotter that counts to 32767 needs `page_length: \"819 mm\"` and `width: \"819 mm\"`"
+        ]
+    );
     let text = String::from_utf8(plain.bytes).unwrap();
     assert!(text.starts_with("IN;PA;\nSP4;\nPU") && text.ends_with("PU;PG;\nSP0;\n"));
 }
