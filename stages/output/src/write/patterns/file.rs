@@ -50,9 +50,19 @@ pub(crate) fn files(
     Ok(OutputFiles(files))
 }
 
-/// Why a pattern is not written, with what can be done.
+/// Why a pattern is not written, with what can be done, at the parameter that decides it.
 pub(crate) fn refused(e: WriteError) -> StageError {
-    StageError::invalid(e.to_string()).hint(e.remedy())
+    let error = StageError::invalid(e.to_string()).hint(e.remedy());
+    match e {
+        WriteError::Pages { .. }
+        | WriteError::Sheet { .. }
+        | WriteError::SmallPage { .. }
+        | WriteError::LargePage { .. } => error.at("paper"),
+        WriteError::Roll { .. } => error.at("width"),
+        WriteError::PlotPage { .. } => error.at("page_length"),
+        WriteError::PlotUnit { .. } => error.at("units"),
+        _ => error,
+    }
 }
 
 /// Sentences that differ in names and numbers alone, as one: the first, and how many more there

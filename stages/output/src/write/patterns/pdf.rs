@@ -79,7 +79,7 @@ impl PatternPdf {
     }
 
     fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        let page = self.paper.paper().check().map_err(|e| refused(e).at("paper"));
+        let page = self.paper.paper().check().map_err(refused);
         [check_name(&self.name).err(), page.err()].into_iter().flatten().collect()
     }
 }

@@ -121,4 +121,5 @@ fn a_plot_is_written_and_a_roll_that_is_too_narrow_refused() {
     assert_eq!(files, plt("(name: \"roll\", cut_pen: 7, page_length: \"3 m\")").unwrap());
     let e = plt("(width: \"10 cm\")").unwrap_err();
     assert!(e.message.ends_with("across the roll, which is 100 mm wide"), "{}", e.message);
+    assert_eq!(e.param, Some("width"));
 }
