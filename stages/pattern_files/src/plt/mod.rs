@@ -16,9 +16,9 @@
 //! Cost: some ten milliseconds a piece. Limits: pieces are turned by right angles alone, and are
 //! not nested into each other; the origin is the lower left corner of a page, not its middle as
 //! that of large pen plotters before HP-GL/2; machines that count with 16 bits take 819 mm along
-//! and across, which is told; machines that lay x along the longer side of a page turn a plot that is
-//! shorter than the roll is wide; Latin letters, others are question marks, which is told; one size; every piece is
-//! cut once. Seams are numbers on edges, no program reads them back.
+//! and across, which is told; machines that lay x along the longer side of a page turn a plot that
+//! is shorter than the roll is wide; Latin letters, others are question marks, which is told; one
+//! size; every piece is cut once. Seams are numbers on edges, no program reads them back.
 
 mod instructions;
 mod letters;
