@@ -63,7 +63,7 @@ pub enum ProofSteps {
 /// Behind another `StaticEquilibrium` it takes that one's parameters where it is given none.
 #[stage(
     role = Draper,
-    version = 22,
+    version = 23,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "StaticEquilibrium(speed: 0.001, non_static: 0.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

@@ -5,13 +5,11 @@
 //! Newton's method on each level (see `newton/to_rest`). Limits: a level that is too coarse for the
 //! body or its seams is reported, and the caller tries again on a finer one (see `solve`).
 
-use crate::contact::collision_surface::CollisionSurface;
 use crate::error::ClothError;
 use crate::mesh::Sheet;
 use crate::statics::drive::plan::Plan;
 use crate::statics::factor::multifrontal::Halt;
-use crate::statics::forces::body_contact::BodyContact;
-use crate::statics::forces::clearance::{Clearance, clearance, lifted};
+use crate::statics::forces::clearance::clearance;
 use crate::statics::forces::penetration::pierced;
 use crate::statics::forces::seam_force::{SeamForces, widest};
 use crate::statics::forces::self_contact::SelfContact;
@@ -26,18 +24,6 @@ use crate::statics::report::unbalanced::unbalanced;
 use std::ops::ControlFlow;
 use std::time::Instant;
 use toile_geometry::Vec3;
-
-/// Rounds at most in which nodes are moved out where triangles dip into the body.
-const CLEARANCE_ROUNDS: usize = 12;
-
-/// Dips that are less deep than this after a round are moved out without regard to forces, m.
-const SHALLOW_DIP: f64 = 1e-4;
-
-/// Farthest that a node is moved so, m.
-const FARTHEST_LIFT: f64 = 1e-3;
-
-/// First step of pseudo-time in such a round, in which the cloth hardly moves, s.
-const CLEARANCE_STEP: f64 = 0.2;
 
 /// Greatest number of points of a mesh on which the garment is sewn anew because it still
 /// intersects itself on a coarser one. Sewing a larger mesh takes long, and the rest may be
@@ -78,7 +64,7 @@ pub(crate) struct Solve<'a> {
     pub(crate) x: Vec<Vec3>,
     pub(crate) joined_at: Option<f64>,
     /// How deep the final cloth dips into the body between its vertices, where that is known, m.
-    dip: Option<f64>,
+    pub(crate) dip: Option<f64>,
     pub(crate) reports: Vec<LevelReport>,
     /// Whether cloth passes through cloth while its seams close.
     pub(crate) sews_through: bool,
@@ -128,53 +114,6 @@ impl<'a> Solve<'a> {
         (pierced(sheet, collider.surface, x) > 0).then_some(Draped::TooCoarse { finer })
     }
 
-    /// Moves nodes out where triangles between them dip into the body, and relaxes the cloth again.
-    /// What is left of some hundredths of a millimetre, as in the crease of an armpit, is moved out
-    /// without regard to forces.
-    pub(crate) fn restore_clearance(
-        &mut self,
-        mesh: LevelMesh<'_>,
-        system: &mut System<'_>,
-        x: &mut [Vec3],
-        options: &NewtonOptions,
-        progress: &mut Progress<'_>,
-    ) -> Result<(), StaticsError> {
-        let Some(body) = self.plan.body else { return Ok(()) };
-        let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
-        for round in 0..CLEARANCE_ROUNDS {
-            let Clearance { lacks, depth, triangles, .. } = clearance(mesh.sheet, body.surface, x);
-            if triangles == 0 {
-                self.dip = Some(depth);
-                break;
-            }
-            if round > 0 && depth < SHALLOW_DIP && self.lift(mesh, body.surface, &system.pinned, x) {
-                break;
-            }
-            if let Some(contact) = system.get_mut::<BodyContact>() {
-                contact.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
-            }
-            let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
-            self.reports.push(report);
-        }
-        Ok(())
-    }
-
-    /// Moves nodes out of the body without regard to forces, where cloth does not cross more cloth
-    /// then; returns whether it did.
-    fn lift(
-        &self,
-        mesh: LevelMesh<'_>,
-        body: &dyn CollisionSurface,
-        pinned: &[bool],
-        x: &mut [Vec3],
-    ) -> bool {
-        let lifted = lifted(mesh.sheet, body, x, pinned, FARTHEST_LIFT);
-        let crossings = |x: &[Vec3]| self.crossings(mesh.sheet, x);
-        let Some(lifted) = lifted.filter(|lifted| crossings(lifted) <= crossings(x)) else { return false };
-        x.copy_from_slice(&lifted);
-        true
-    }
-
     /// The equilibrium of the finest level, with its nodes at `x`.
     pub(crate) fn finish(
         self,
@@ -216,7 +155,7 @@ impl<'a> Solve<'a> {
     }
 
     /// Crossings of the sewn finest level with itself, with its nodes at `x`.
-    fn crossings(&self, sheet: &Sheet, x: &[Vec3]) -> usize {
+    pub(crate) fn crossings(&self, sheet: &Sheet, x: &[Vec3]) -> usize {
         #[cfg(toile_without = "self_contact")]
         return 0;
         #[cfg(not(toile_without = "self_contact"))]

@@ -6,6 +6,7 @@
 //! level must prove that it is at rest. Cost and limits: see `solve`.
 
 use crate::statics::drive::coarse_to_fine::{Draped, LevelMesh, Solve};
+use crate::statics::drive::dips::Rounds;
 use crate::statics::drive::held::hold_as;
 use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::levels::bending_continuation::stages;
@@ -255,7 +256,7 @@ impl<'a> Solve<'a> {
         let mesh = LevelMesh { k: 0, is_open: false, sheet, layout };
         let report = self.relax_uncrossed(mesh, system, x, &options, progress)?;
         self.reports.push(report);
-        self.restore_clearance(mesh, system, x, &options, progress)
+        self.restore_clearance(Rounds { mesh, system, x, options }, progress)
     }
 
     /// Whether the cloths of a stack start one by one on level `k`. Finer levels start from the

@@ -4,7 +4,8 @@
 
 pub(crate) mod coarse_to_fine;
 pub(crate) mod contour;
-pub(crate) mod drape;
+pub(crate) mod dips;
+mod drape;
 pub(crate) mod fallen;
 pub(crate) mod held;
 pub(crate) mod initial;
