@@ -15,6 +15,7 @@ mod garment;
 mod garment_check;
 mod garment_sizes;
 mod geometry;
+mod hand;
 mod locate;
 mod mask;
 mod measures;
@@ -38,6 +39,7 @@ pub use figures::{
 pub use files::{OutputFile, OutputFiles};
 pub use garment::{Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, SeamState, SolveStatus, quantile};
 pub use geometry::{Point2, Point3, Vector2, Vector3, polygon_area, polyline_length};
+pub use hand::Hand;
 pub use locate::{Located, Locator};
 pub use mask::Mask;
 pub use measures::{Measure, Measures};

@@ -201,7 +201,8 @@ impl Neckline {
 /// its back, metres.
 fn throat(body: &Body) -> Option<f64> {
     let at = |name: &str| body.landmarks.get(name).copied();
-    let (left, right) = (at("neck_left")?, at("neck_right")?);
+    let [left, right] = Hand::BOTH.map(|hand| body.landmark("neck", hand));
+    let (left, right) = (left?, right?);
     let (front, back) = (at("neck_base_front")?, at("neck_base_back")?);
     let (a, b) = (0.5 * (left - right).norm(), 0.5 * (front - back).norm());
     // Ramanujan 1914.

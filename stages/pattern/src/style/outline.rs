@@ -68,14 +68,14 @@ impl Template {
 
     /// The names of all edges of a panel.
     fn edges(&self) -> Vec<String> {
-        let both = self.half().flat_map(|(name, _)| ["left", "right"].map(|side| format!("{name}_{side}")));
+        let both = self.half().flat_map(|(name, _)| Hand::BOTH.map(|hand| hand.name(name)));
         both.chain(["neck".to_owned(), "hem".to_owned()]).collect()
     }
 
     /// The edges at which front and back are sewn, from the shoulders down.
     fn sewn(&self) -> Vec<String> {
         let sewn = self.half().rev().filter(|(name, _)| ["shoulder", "underarm", "side"].contains(name));
-        sewn.flat_map(|(name, _)| ["left", "right"].map(|side| format!("{name}_{side}"))).collect()
+        sewn.flat_map(|(name, _)| Hand::BOTH.map(|hand| hand.name(name))).collect()
     }
 }
 
@@ -211,17 +211,18 @@ fn has_sleeves(template: &Template, lying: &Fit) -> bool {
 
 /// The outline with its edges; `None` where their corners do not follow each other.
 fn named(template: &Template, panel: &str, outline: &Shape, fitted: &Fitted) -> Option<Shape> {
-    let [plus, minus] = if is_back(panel) { ["right", "left"] } else { ["left", "right"] };
+    let layer = if is_back(panel) { Layer::Back } else { Layer::Front };
+    let [plus, minus] = [0, 1].map(|k| layer.hand(k));
     let corner = |k: usize, side: usize| corner(outline, fitted, k, side);
     let neck = template.form.edges.len() - 1;
     let half: Vec<(&str, usize)> = template.half().collect();
     // Upwards an edge starts at its lower corner, downwards at its upper one.
     let mut starts: Vec<(String, usize)> =
-        half.iter().map(|(name, k)| (format!("{name}_{plus}"), corner(*k, 0))).collect();
+        half.iter().map(|(name, k)| (plus.name(name), corner(*k, 0))).collect();
     starts.push(("neck".to_owned(), corner(neck, 0)));
     let upper = half.iter().skip(1).map(|(_, k)| *k).chain([neck]);
     let down: Vec<_> =
-        half.iter().zip(upper).map(|((name, _), k)| (format!("{name}_{minus}"), corner(k, 1))).collect();
+        half.iter().zip(upper).map(|((name, _), k)| (minus.name(name), corner(k, 1))).collect();
     starts.extend(down.into_iter().rev());
     starts.push(("hem".to_owned(), corner(half[0].1, 1)));
     let (n, first) = (outline.outer.points.len(), starts[0].1);
@@ -277,7 +278,7 @@ fn pose(laid: &Laid<'_>, body: &Body) -> Result<Pose, StageError> {
     let Fitted { upright, lying, .. } = &laid.fitted;
     let Fit { sides, turn, shift, .. } = lying;
     let top = 0.5 * sides.iter().filter_map(|s| s.last()).map(|neck| neck.a.y).sum::<f64>();
-    let stand = Stand::of(body, "neck_left", top)?;
+    let stand = Stand::of(body, &Hand::Left.name("neck"), top)?;
     let turn = upright.tilt.to_radians() + turn;
     let origin = Rotation2::new(-turn) * -upright.centre - Vector2::new(*shift, 0.0);
     let layer = if is_back(laid.panel) { Layer::Back } else { Layer::Front };

@@ -178,9 +178,9 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
 fn check_direction(outlines: &BTreeMap<String, Outline>, seam: &Seam) -> Result<(), StageError> {
     let [a, b] = [&seam.a, &seam.b].map(|side| {
         // As it is seen from before the wearer.
-        let hand = if is_back(&side.panel) { -1.0 } else { 1.0 };
+        let sign = if is_back(&side.panel) { -1.0 } else { 1.0 };
         let points = find(outlines, side)?;
-        Ok::<_, StageError>(evenly(&points).map(|q| Point2::new(hand * q.x, q.y)))
+        Ok::<_, StageError>(evenly(&points).map(|q| Point2::new(sign * q.x, q.y)))
     });
     let (a, b) = (a?, b?);
     // Only the run of the edges counts, not how far the panels lie apart.

@@ -35,5 +35,5 @@ pub(super) fn half(side: &Side, trunk: &[(&'static str, Run)], form: &Form) -> F
     let mut edges = vec![("hem", Run::Cubic(hem))];
     edges.extend(trunk.iter().cloned());
     edges.extend([("neck", Run::Cubic(neck)), ("middle", Run::Cubic(middle))]);
-    Flat::of_trunk(format!("{}_front", side.word), side.own(&edges))
+    Flat::of_trunk(format!("{}_front", side.hand), side.own(&edges))
 }

@@ -44,7 +44,11 @@ pub(super) fn pattern(
     body: &Body,
     cx: &Context,
 ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
-    let hung = if form.edges.last().is_some_and(|e| e.name == "neck") { "neck_left" } else { "waist_front" };
+    let hung = if form.edges.last().is_some_and(|e| e.name == "neck") {
+        Hand::Left.name("neck")
+    } else {
+        "waist_front".to_owned()
+    };
     for (_, fitted) in layers {
         let edges = &fitted.fit.sides[0];
         let [top, low] =
@@ -55,7 +59,7 @@ pub(super) fn pattern(
     let (mut flats, mut pieces, mut photos) = (Vec::new(), Vec::new(), BTreeMap::new());
     for (layer, fitted) in layers {
         let top = fitted.fit.sides[0].last().map_or(0.0, |neck| neck.a.y);
-        let stand = stand::Stand::of(body, hung, top)?;
+        let stand = stand::Stand::of(body, &hung, top)?;
         let lying = pieces::layer(&fitted.lying, form, making, *layer, false);
         for (flat, lying) in pieces::layer(&fitted.fit, form, making, *layer, true).into_iter().zip(lying) {
             let pose = Some(stand.pose(flat.origin, flat.turn, *layer));

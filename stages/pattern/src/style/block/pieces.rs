@@ -181,7 +181,7 @@ fn sleeve(side: &Side, edges: &[(&'static str, Run)], layer: Layer) -> Option<Fl
     let (cuff, cap) = (middle("cuff")?, middle("cap")?);
     let way = (cap - cuff).try_normalize(1e-9)?;
     Some(Flat {
-        name: format!("{}_sleeve_{}", side.word, layer.word()),
+        name: format!("{}_sleeve_{}", side.hand, layer.word()),
         edges: edges.iter().map(|(name, run)| ((*name).to_owned(), run.clone())).collect(),
         lines: Vec::new(),
         part: BodyPart::Arm,
@@ -237,7 +237,7 @@ fn leg(side: &Side, layer: Layer) -> Flat {
     if side.mirrored {
         edges.reverse();
     }
-    let name = format!("{}_leg_{}", side.word, layer.word());
+    let name = format!("{}_leg_{}", side.hand, layer.word());
     Flat { part: BodyPart::Leg, ..Flat::of_trunk(name, edges) }
 }
 

@@ -16,14 +16,14 @@ pub(super) fn seams(pieces: &[Flat], form: &Form, fold: PleatFold) -> Vec<Patter
     let mut found: Vec<PatternSeam> = fronts.flat_map(shared).collect();
     let opens = pieces.iter().any(|p| p.name == "left_front");
     if opens {
-        let [left, right] = ["left", "right"].map(|side| (format!("{side}_front"), format!("middle_{side}")));
+        let [left, right] = Hand::BOTH.map(|hand| (format!("{hand}_front"), hand.name("middle")));
         found.push(seam("middle", [&left.0, &left.1], [&right.0, &right.1]));
     }
-    let places = ["front", "back"].iter().flat_map(|layer| ["left", "right"].map(|side| (*layer, side)));
+    let places = ["front", "back"].iter().flat_map(|layer| Hand::BOTH.map(|hand| (*layer, hand)));
     if form.underarm().is_some() {
-        found.extend(places.map(|(layer, side)| match (layer, opens) {
-            ("front", true) => set_in(pieces, &format!("{side}_front"), layer, side),
-            _ => set_in(pieces, layer, layer, side),
+        found.extend(places.map(|(layer, hand)| match (layer, opens) {
+            ("front", true) => set_in(pieces, &format!("{hand}_front"), layer, hand),
+            _ => set_in(pieces, layer, layer, hand),
         }));
     }
     for band in pieces.iter().filter(|p| p.name.starts_with("band_")) {
@@ -45,17 +45,14 @@ fn shared(front: &Flat) -> Vec<PatternSeam> {
         "left_front" | "right_front" => "back".to_owned(),
         name => name.replace("front", "back"),
     };
-    let is_shared = |name: &&String| {
-        let word = name.trim_end_matches("_left").trim_end_matches("_right");
-        !NOT_SHARED.contains(&word)
-    };
+    let is_shared = |name: &&String| !NOT_SHARED.contains(&Hand::split(name).0);
     let names = front.edges.iter().map(|(name, _)| name).filter(is_shared);
     names.map(|edge| seam(edge, [&front.name, edge], [&back, edge])).collect()
 }
 
 /// A sleeve's cap in its armhole; a longer cap is eased in.
-fn set_in(pieces: &[Flat], trunk: &str, layer: &str, side: &str) -> PatternSeam {
-    let (armhole, sleeve) = (format!("armhole_{side}"), format!("{side}_sleeve_{layer}"));
+fn set_in(pieces: &[Flat], trunk: &str, layer: &str, hand: Hand) -> PatternSeam {
+    let (armhole, sleeve) = (hand.name("armhole"), format!("{hand}_sleeve_{layer}"));
     let length = |piece: &str, edge: &str| {
         let edges = pieces.iter().filter(|p| p.name == piece).flat_map(|p| &p.edges);
         edges.filter(|e| e.0 == edge).map(|e| e.1.length()).sum::<f64>()
@@ -80,8 +77,8 @@ fn pleats(piece: &Flat, fold: PleatFold) -> impl Iterator<Item = PatternSeam> + 
 
 /// The seam in the middle of trousers.
 fn rise(layer: &str) -> PatternSeam {
-    let leg = |side: &str| format!("{side}_leg_{layer}");
-    seam("rise", [&leg("left"), "rise"], [&leg("right"), "rise"])
+    let [left, right] = Hand::BOTH.map(|hand| format!("{hand}_leg_{layer}"));
+    seam("rise", [&left, "rise"], [&right, "rise"])
 }
 
 /// Two edges that run counter-clockwise and meet face to face: one of them is walked against its

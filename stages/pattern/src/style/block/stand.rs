@@ -30,7 +30,7 @@ impl Stand {
             .hint("take a Mannequin")
         })?;
         let crown = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
-        let side = body.landmarks.get("shoulder_left").map_or(f64::INFINITY, |p| p.x.abs());
+        let side = body.landmark("shoulder", Hand::Left).map_or(f64::INFINITY, |p| p.x.abs());
         let trunk = || {
             let counts = |p: &&Point3| p.x.abs() < side && p.y > TRUNK.0 * crown && p.y < TRUNK.1 * crown;
             body.positions.iter().filter(counts).map(|p| p.z)

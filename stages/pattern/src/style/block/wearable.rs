@@ -92,7 +92,7 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
 /// long.
 fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
     let cuff = form.underarm()? + 1;
-    let mark = |name: &str| body.landmarks.get(&format!("{name}_left")).copied();
+    let mark = |name: &str| body.landmark(name, Hand::Left);
     let (shoulder, elbow, wrist) = (mark("shoulder")?, mark("elbow")?, mark("wrist")?);
     let (upper, fore) = ((elbow - shoulder).norm(), (wrist - elbow).norm());
     let armpit = mark("armpit").map_or(0.0, |p| (p - shoulder).dot(&(elbow - shoulder)) / upper.max(1e-6));

@@ -126,10 +126,10 @@ impl Layer {
     }
 
     /// The wearer's side that lies at positive u, or at negative.
-    fn side(self, k: usize) -> &'static str {
+    pub(crate) fn hand(self, k: usize) -> Hand {
         match (self, k) {
-            (Layer::Front, 0) | (Layer::Back, 1) => "left",
-            _ => "right",
+            (Layer::Front, 0) | (Layer::Back, 1) => Hand::Left,
+            _ => Hand::Right,
         }
     }
 }
@@ -139,7 +139,7 @@ impl Layer {
 pub(crate) struct Side {
     pub edges: Vec<(&'static str, Curve)>,
     pub mirrored: bool,
-    pub word: &'static str,
+    pub hand: Hand,
 }
 
 fn flip(p: Point2) -> Point2 {
@@ -150,7 +150,7 @@ impl Side {
     pub(crate) fn of(fit: &Fit, form: &Form, layer: Layer, k: usize) -> Side {
         let names = form.edges.iter().map(|e| e.name);
         let edges = names.zip(fit.sides[k].iter().map(|b| Curve::from(*b))).collect();
-        Side { edges, mirrored: k == 1, word: layer.side(k) }
+        Side { edges, mirrored: k == 1, hand: layer.hand(k) }
     }
 
     /// A curve as it lies, so that loops run counter-clockwise.
@@ -168,9 +168,9 @@ impl Side {
         all
     }
 
-    /// The same with the side's word.
+    /// The same with the side in their names.
     pub(crate) fn own(&self, edges: &[(&'static str, Run)]) -> Vec<(String, Run)> {
-        self.named(edges).into_iter().map(|(name, run)| (format!("{name}_{}", self.word), run)).collect()
+        self.named(edges).into_iter().map(|(name, run)| (self.hand.name(name), run)).collect()
     }
 }
 
