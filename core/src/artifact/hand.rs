@@ -17,18 +17,12 @@ impl Hand {
 
     /// `left` or `right`.
     pub const fn word(self) -> &'static str {
-        match self {
-            Hand::Left => "left",
-            Hand::Right => "right",
-        }
+        if matches!(self, Hand::Left) { "left" } else { "right" }
     }
 
     /// The sign of x there.
     pub const fn sign(self) -> f64 {
-        match self {
-            Hand::Left => 1.0,
-            Hand::Right => -1.0,
-        }
+        if matches!(self, Hand::Left) { 1.0 } else { -1.0 }
     }
 
     /// The side on which `x` lies, a distance from the middle of the body.
@@ -38,10 +32,7 @@ impl Hand {
 
     /// The other side.
     pub const fn other(self) -> Hand {
-        match self {
-            Hand::Left => Hand::Right,
-            Hand::Right => Hand::Left,
-        }
+        if matches!(self, Hand::Left) { Hand::Right } else { Hand::Left }
     }
 
     /// The name of what a body or a piece has on both sides: `shoulder_left`.

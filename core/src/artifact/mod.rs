@@ -47,8 +47,8 @@ pub use model::{Material, Mesh, Model, Sheen, Texture, Variant};
 pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
 pub use pattern::{
-    BodyPart, EdgeCurve, EdgePath, EdgeUse, LinePurpose, Lowered, LoweringError, Notch, Pattern, PatternLoop,
-    PatternSeam, Piece, PieceEdge, PieceLine, Pose, lacking_stops,
+    BodyPart, EdgeCurve, EdgePath, EdgeRole, EdgeUse, LinePurpose, Lowered, LoweringError, Notch, Pattern,
+    PatternLoop, PatternSeam, Piece, PieceEdge, PieceLine, Pose, lacking_stops,
 };
 pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;

@@ -73,7 +73,7 @@ fn fins(garment: &Garment) -> impl Iterator<Item = String> + '_ {
 
 /// Shoulder seams that stand off the body.
 fn shoulders<'a>(garment: &'a Garment, collider: Option<&'a Collider>) -> impl Iterator<Item = String> + 'a {
-    let all = garment.seams.iter().filter(|s| s.name.contains("shoulder"));
+    let all = garment.seams.iter().filter(|s| s.name.contains(EdgeRole::Shoulder.word()));
     all.filter_map(move |seam| {
         let points: Vec<Point3> =
             seam.pairs.iter().map(|pair| garment.positions[pair[0] as usize]).collect();

@@ -2,7 +2,7 @@
 
 use super::MessageContext;
 use nalgebra::Vector3;
-use toile_core::artifact::Point3;
+use toile_core::artifact::{Hand, Point3};
 
 /// A place nearer than this to a landmark is described by that landmark, metres.
 const AT: f64 = 0.12;

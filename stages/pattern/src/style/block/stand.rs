@@ -1,7 +1,7 @@
 //! Where the pieces of a garment stand around a body: as they lie, front before it and back behind
 //! it.
 
-use crate::style::block::template::flat::Layer;
+use crate::style::block::template::piece_role::Layer;
 use nalgebra::Rotation2;
 use toile_core::prelude::*;
 
