@@ -9,7 +9,7 @@ use std::path::Path;
 use toile_pipeline::Override;
 
 /// Fields whose values are paths of files that a stage reads.
-const FIELDS: [&str; 3] = ["file", "seams", "panorama"];
+const FIELDS: [&str; 4] = ["file", "seams", "measurements", "panorama"];
 
 /// The overrides with their files found.
 pub(crate) fn found(overrides: &[Override]) -> Vec<Override> {

@@ -21,7 +21,7 @@ use toile_core::prelude::{Context, ErrorCode, StageError};
 use toile_geometry::obj;
 use toile_output::flat::{FileMeshes, file_meshes};
 use toile_output::write::origin::{FILE, FlatPieces};
-use toile_pattern::pattern::{DxfPattern, GarmentCode, SvgPattern};
+use toile_pattern::pattern::{DxfPattern, GarmentCode, SeamlyPattern, SvgPattern};
 
 /// The files' names that a run's folder is searched for first.
 const FIRST: [&str; 2] = ["garment.glb", "result.obj"];
@@ -129,11 +129,11 @@ impl FileReader {
             Some("json") => GarmentCode { file }.run(&cx)?.0,
             Some("dxf") => DxfPattern { file, seams, ..DxfPattern::default() }.run(&cx)?.0,
             Some("svg") => SvgPattern { file, seams, ..SvgPattern::default() }.run(&cx)?.0,
+            Some("sm2d" | "val") => SeamlyPattern { file, seams, ..SeamlyPattern::default() }.run(&cx)?.0,
             _ => {
-                let what = format!("\"{file}\" is not a .json, .dxf or .svg file");
-                return Err(
-                    unreadable(what).hint("name a pattern of GarmentCode (.json), a .dxf or an .svg file")
-                );
+                let what = format!("\"{file}\" is not a pattern by its name");
+                return Err(unreadable(what)
+                    .hint("name a pattern of GarmentCode (.json), a .dxf, .svg, .sm2d or .val file"));
             }
         };
         let told = cx.take_remarks();

@@ -24,6 +24,29 @@ const DRAWING: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="600mm" 
 <path class="fold" d="M 20,100 V 600"/><path class="grain" d="M 60,200 V 500"/><circle class="notch" cx="266" cy="400" r="2"/></g>
 </svg>"##;
 
+/// A front and a back of the same form, drafted from two measurements, as Seamly2D saves them.
+const DRAFT: &str = r##"<pattern><version>0.6.8</version><unit>cm</unit><measurements>body.smis</measurements>
+<variables><variable name="#ease" formula="4" description=""/></variables>
+<draftBlock name="skirt"><calculation>
+<point id="1" name="A" type="single" x="0" y="0"/>
+<point id="2" name="B" type="endLine" basePoint="1" angle="270" length="60"/>
+<point id="3" name="C" type="endLine" basePoint="2" angle="0" length="(hip_circ + #ease)/4 + 6"/>
+<point id="4" name="D" type="endLine" basePoint="1" angle="3" length="(waist_circ + #ease)/4"/>
+<spline id="5" type="simpleInteractive" point1="4" point4="3" angle1="AngleLine_D_C" length1="15" angle2="AngleLine_C_D" length2="15"/>
+</calculation><modeling><point id="11" idObject="1" type="modeling"/><point id="12" idObject="2" type="modeling"/>
+<point id="13" idObject="3" type="modeling"/><point id="14" idObject="4" type="modeling"/>
+<spline id="15" idObject="5" type="modelingSpline"/></modeling>
+<pieces><piece id="20" name="front"><data onFold="true" quantity="1"/><grainline visible="true" rotation="90"/><nodes>
+<node type="NodePoint" idObject="11"/><node type="NodePoint" idObject="14"/><node type="NodeSpline" idObject="15"/>
+<node type="NodePoint" idObject="13"/><node type="NodePoint" idObject="12"/></nodes></piece>
+<piece id="21" name="back"><data onFold="true" quantity="1"/><grainline visible="true" rotation="90"/><nodes>
+<node type="NodePoint" idObject="11"/><node type="NodePoint" idObject="14"/><node type="NodeSpline" idObject="15"/>
+<node type="NodePoint" idObject="13"/><node type="NodePoint" idObject="12"/></nodes></piece></pieces></draftBlock></pattern>"##;
+
+/// The measurements of the draft, as SeamlyMe saves them.
+const MEASUREMENTS: &str = r#"<smis><version>0.3.4</version><unit>cm</unit><body-measurements>
+<m name="waist_circ" value="72"/><m name="hip_circ" value="96"/></body-measurements></smis>"#;
+
 /// Two half pieces of size M, as CAD programs exchange them: mirror line above, grain along x,
 /// millimetres.
 fn pieces() -> String {
@@ -51,7 +74,7 @@ fn pieces() -> String {
 
 /// Lays the files that an example names into a folder: pictures (`empty.jpg` shows the ground
 /// without the garment), a body as OBJ (a garment where its name says so), a GarmentCode pattern
-/// under its usual ending, a DXF and an SVG of pieces, and, of other kinds, whatever a writer of
+/// under its usual ending, a DXF and an SVG of pieces, a draft with its measurements, and, of other kinds, whatever a writer of
 /// the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
@@ -69,6 +92,8 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
             Some("png") => lay(name, &encoded(&shapes::photo(), image::ImageFormat::Png))?,
             Some("dxf") => lay(name, pieces().as_bytes())?,
             Some("svg") => lay(name, DRAWING.as_bytes())?,
+            Some("sm2d" | "val") => lay(name, DRAFT.as_bytes())?,
+            Some("smis" | "vit") => lay(name, MEASUREMENTS.as_bytes())?,
             Some("obj") if name.contains("garment") => lay(name, &garment_file())?,
             Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
             Some(extension) if extension.chars().all(char::is_alphabetic) => {

@@ -1,6 +1,7 @@
 //! Bodies: made from measurements or read from a file.
 
 mod body_obj;
+mod depth;
 mod figure;
 mod form;
 mod limbs;
@@ -12,6 +13,7 @@ mod skin;
 mod wearer;
 
 pub use body_obj::{BodyObj, Units, Up, body_of_mesh};
+pub use depth::DepthMap;
 pub use limbs::bridge::bridged;
 pub use limbs::swing::Swing;
 pub use mannequin::Mannequin;

@@ -58,6 +58,67 @@ pub enum WriteError {
         /// The most, metres.
         most: f64,
     },
+    /// A page that is too small for what stands on each.
+    #[error(
+        "a page of {width:.0} mm by {height:.0} mm is too small for its margins and the test square: {} mm by {} mm are the least",
+        .least[0], .least[1]
+    )]
+    SmallPage {
+        /// Its width, millimetres.
+        width: f64,
+        /// Its height, millimetres.
+        height: f64,
+        /// The least width and height, millimetres.
+        least: [f64; 2],
+    },
+    /// A page that is larger than one of a PDF may be.
+    #[error("a page of {width:.0} mm by {height:.0} mm is too large: {most:.0} mm are the most")]
+    LargePage {
+        /// Its width, millimetres.
+        width: f64,
+        /// Its height, millimetres.
+        height: f64,
+        /// The most, millimetres.
+        most: f64,
+    },
+    /// A piece that is wider than the roll it is plotted on.
+    #[error("piece \"{piece}\" needs {needed:.0} mm across the roll, which is {width:.0} mm wide")]
+    Roll {
+        /// The piece.
+        piece: String,
+        /// Its size across the roll, millimetres.
+        needed: f64,
+        /// The roll's width, millimetres.
+        width: f64,
+    },
+    /// A piece that is longer than a page of a plot.
+    #[error("piece \"{piece}\" needs {needed:.0} mm along the roll, pages are {length:.0} mm long")]
+    PlotPage {
+        /// The piece.
+        piece: String,
+        /// Its size along the roll, millimetres.
+        needed: f64,
+        /// The length of the pages, millimetres.
+        length: f64,
+    },
+    /// A plot beyond the numbers that plotters read.
+    #[error("the plot needs {metres:.1} m of the roll, {most:.1} m are the most that plotters count")]
+    PlotLength {
+        /// Its length, metres.
+        metres: f64,
+        /// The most, metres.
+        most: f64,
+    },
+    /// A unit of length that no plotter has.
+    #[error("a plotter has {given} units a millimetre, {least} to {most} are taken")]
+    PlotUnit {
+        /// What is asked for.
+        given: f64,
+        /// The least.
+        least: f64,
+        /// The most.
+        most: f64,
+    },
 }
 
 impl WriteError {
@@ -69,8 +130,16 @@ impl WriteError {
             WriteError::Far { .. } => "correct the unit of the pattern, which is the metre",
             WriteError::Allowance { .. } => "give the allowance in metres, such as 0.01",
             WriteError::NoEdge { .. } => "name a piece and an edge of its outline, such as \"front.hem\"",
-            WriteError::Pages { .. } => "write fewer pieces at a time, or in one piece",
+            WriteError::Pages { .. } => "write fewer pieces at a time, on larger pages, or in one piece",
             WriteError::Sheet { .. } => "write it on A4 or Letter pages",
+            WriteError::SmallPage { .. } => "take A4, Letter or a larger page",
+            WriteError::LargePage { .. } => "take A0 or a smaller page",
+            WriteError::Roll { .. } => "take a wider roll, or lay the long side of pieces along it",
+            WriteError::PlotPage { .. } => "take longer pages, or none: the plot is one piece then",
+            WriteError::PlotLength { .. } => "plot fewer pieces at a time, on a wider roll, or on pages",
+            WriteError::PlotUnit { .. } => {
+                "take 40, which is 1016 an inch, unless the plotter's manual has another number"
+            }
         }
     }
 }

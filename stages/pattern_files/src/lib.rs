@@ -1,10 +1,11 @@
-//! Sewing patterns as files: GarmentCode JSON, SVG, DXF and PDF.
+//! Sewing patterns as files: GarmentCode JSON, SVG, DXF, PDF and HP-GL.
 //!
 //! Every writer is a function of a pattern, and of options, to the bytes of a file. The same
 //! pattern gives the same bytes each time. What a file cannot hold is told in sentences; seams
 //! stand in a file beside it, by the names that the file's reader will give.
 
 pub mod allowance;
+mod drawing;
 pub mod dxf;
 mod error;
 mod flatten;
@@ -17,6 +18,7 @@ mod names;
 mod options;
 mod parts;
 pub mod pdf;
+pub mod plt;
 mod shelf;
 mod sidecar;
 pub mod svg;

@@ -15,9 +15,9 @@
 //! use image::{Rgb, RgbImage};
 //! use toile_scale::{KnownObject, RectifyOptions, find, rectify};
 //!
-//! // White paper on a dark ground from straight above, 1000 pixels per metre. let mut photo =
-//! RgbImage::from_pixel(800, 600, Rgb([70, 60, 50])); for (x, y) in (200..497).flat_map(|x|
-//! (150..360).map(move |y| (x, y))) {
+//! // White paper on a dark ground from straight above, 1000 pixels per metre.
+//! let mut photo = RgbImage::from_pixel(800, 600, Rgb([70, 60, 50]));
+//! for (x, y) in (200..497).flat_map(|x| (150..360).map(move |y| (x, y))) {
 //!     photo.put_pixel(x, y, Rgb([235, 235, 230]));
 //! }
 //! let found = find(&photo, KnownObject::A4)?;

@@ -160,6 +160,21 @@ fn dxf() {
 }
 
 #[test]
+fn seamly() {
+    let dir = tempfile::tempdir().unwrap();
+    let example = "SeamlyPattern(file: \"small.sm2d\", measurements: \"body.smis\")";
+    testkit::files::files_for(&REGISTRY, example, dir.path()).unwrap();
+    let seeds =
+        [read(dir.path().join("small.sm2d")), read(root().join("pipelines/samples/pattern/bodice.val"))];
+    let pattern = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.sm2d"), bytes).unwrap();
+        reads("SeamlyPattern", "fuzz.sm2d", dir.path())
+    };
+    assert_eq!(pattern(&seeds[0]), Ok(true));
+    fuzz("seamly", 300, |dice| spoil::text(&seeds, dice), |bytes| pattern(bytes).map(drop));
+}
+
+#[test]
 fn svg() {
     let dir = tempfile::tempdir().unwrap();
     testkit::files::files_for(&REGISTRY, "SvgPattern(file: \"small.svg\")", dir.path()).unwrap();

@@ -85,8 +85,11 @@ fn what_cannot_be_read_is_refused_by_name_and_remedy() {
     std::fs::write(at("pattern.txt"), "none").unwrap();
     let asked = AskedFiles { pattern: Some(at("pattern.txt")), ..asked(&at("skirt.obj")) };
     let e = certify(&asked).unwrap_err();
-    assert_eq!(e.message, format!("\"{}\" is not a .json, .dxf or .svg file", shown("pattern.txt")));
-    assert_eq!(e.hint.as_deref(), Some("name a pattern of GarmentCode (.json), a .dxf or an .svg file"));
+    assert_eq!(e.message, format!("\"{}\" is not a pattern by its name", shown("pattern.txt")));
+    assert_eq!(
+        e.hint.as_deref(),
+        Some("name a pattern of GarmentCode (.json), a .dxf, .svg, .sm2d or .val file")
+    );
 }
 
 #[test]

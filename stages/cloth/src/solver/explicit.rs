@@ -4,9 +4,9 @@
 //!
 //! Undamped and of second order, a few flops per vertex and step. Unstable above `2/omega_max`,
 //! which is computed (not guessed) from the stiffness matrix and again as the sheet stiffens; a
-//! fixed step above it is refused. Stiffness-proportional damping lowers the limit to `(2/w)(sqrt(1
-//! + z²) - z)`, `z = viscosity w / 2`. Obstacles act on velocities, with Coulomb friction that
-//! really sticks.
+//! fixed step above it is refused. Stiffness-proportional damping lowers the limit to
+//! `(2/w)(sqrt(1 + z²) - z)`, `z = viscosity w / 2`. Obstacles act on velocities, with Coulomb
+//! friction that really sticks.
 
 use super::{Model, Report, Solver, State, omega_max};
 use crate::energy::{Projection, Vec3, carried, mobility};

@@ -26,6 +26,7 @@ pub use obj::Obj;
 pub use patterns::dxf::{DxfStandard, PatternDxf};
 pub use patterns::json::PatternJson;
 pub use patterns::pdf::{PatternPaper, PatternPdf};
+pub use patterns::plt::{AlongRoll, HpglStandard, PatternPlt};
 pub use patterns::svg::PatternSvg;
 pub use ply::Ply;
 pub use preview::{Framing, Preview};
@@ -47,6 +48,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<PatternDxf>();
     registry.add::<PatternJson>();
     registry.add::<PatternPdf>();
+    registry.add::<PatternPlt>();
     registry.add::<PatternSvg>();
     registry.add::<Ply>();
     registry.add::<Preview>();

@@ -29,7 +29,7 @@ struct JoinedEnds<'a> {
     pieces: &'a [Piece],
     /// For each end the number of its place.
     of: BTreeMap<End<'a>, usize>,
-    /// JoinedEnds that are one, each with another of its own or itself.
+    /// Places that are one, each with another of its own or itself.
     joined: Vec<usize>,
 }
 

@@ -8,6 +8,7 @@ mod follow;
 mod garment_code;
 mod marks;
 mod propose;
+mod seamly;
 mod seams;
 mod side;
 mod sidecar;
@@ -17,6 +18,7 @@ mod unit;
 
 pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
+pub use seamly::SeamlyPattern;
 pub use svg::SvgPattern;
 pub use unit::DrawingUnit;
 
@@ -27,6 +29,7 @@ use toile_core::{Context, ErrorCode, Registry, Remarks, StageError};
 pub fn register(registry: &mut Registry) {
     registry.add::<GarmentCode>();
     registry.add::<DxfPattern>();
+    registry.add::<SeamlyPattern>();
     registry.add::<SvgPattern>();
 }
 

@@ -159,7 +159,7 @@ fn halved(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<(EdgeCurve, Point
 }
 
 /// A closed line split where it turns; two parts at least where it has two curves or one that can
-/// be halved.
+/// be halved, none where it has no curve.
 pub(super) fn split(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<Side> {
     let parts = halved(start, parts);
     let n = parts.len();
@@ -169,7 +169,7 @@ pub(super) fn split(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<Side> {
     };
     let all: Vec<Side> = (0..n).map(one).collect();
     let mut stops: Vec<usize> = (0..n).filter(|&k| !smooth(&all[(k + n - 1) % n], &all[k], CORNER)).collect();
-    if stops.len() < 2 {
+    if stops.len() < 2 && n > 0 {
         stops = vec![0, n / 2];
     }
     let m = stops.len();
@@ -247,5 +247,6 @@ mod tests {
         assert_eq!(sides[1].curve(), EdgeCurve::Line);
         let clockwise: Vec<Side> = sides.iter().rev().map(Side::turned).collect();
         assert_eq!(counter_clockwise(clockwise), sides);
+        assert_eq!(split(p(0.2, 0.0), &[]), []);
     }
 }

@@ -15,7 +15,6 @@
 //! sews them.
 
 mod boards;
-mod depth;
 mod legs;
 mod limb;
 mod moving;
@@ -27,7 +26,6 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
-use boards::Board;
 use moving::Moving;
 use region::{Decided, Region};
 use std::collections::BTreeMap;
@@ -36,7 +34,7 @@ use toile_core::prelude::*;
 /// The vertices of each piece in space.
 type PiecePlaces = BTreeMap<String, Vec<Point3>>;
 
-/// PiecePlaces of every piece, and the sleeves among those that had none, each with the hand of its arm.
+/// Places of every piece, and the sleeves among those that had none, each with the hand of its arm.
 type Stood = (PiecePlaces, Option<Vec<(String, Hand)>>);
 
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
@@ -62,11 +60,12 @@ const MIDDLE: f64 = 0.65;
 /// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the
 /// pattern says nothing, fronts, backs, sleeves, legs in one piece and waistbands are placed by
 /// their names, seams and sizes. What was decided and moved is in the log. Where legs are swung,
-/// the places without that are left as another start, which `StaticEquilibrium` tries where the
+/// or the garment is raised until its shoulder seams clear the shoulders, the places without that
+/// are left as another start, which `StaticEquilibrium` tries where the
 /// garment does not sew.
 #[stage(
     role = Placement,
-    version = 6,
+    version = 7,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
@@ -114,9 +113,6 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
-        let boards =
-            Flat { pattern: &worn, sleeves: names(sleeves.as_deref()), seams: &seams, offsets: &flat };
-        boards.raise(&mut places, body, cx);
         let finished = |mut places: PiecePlaces| -> Result<(Vec<Point3>, Vec<String>), StageError> {
             for (name, of) in &folded {
                 if let Some(places) = places.get_mut(name) {
@@ -134,25 +130,31 @@ impl Arrange {
             sleeves: sleeves.as_deref(),
             clearance: self.clearance.metres(),
         };
-        let mut starts = Vec::new();
-        let (places, told) = match self.bend {
-            true => {
-                let (moved, others) = moving.moved_and_others(&places);
-                for (told, places) in others {
-                    starts.push(GarmentStart { told: told.into(), positions: finished(places)?.0 });
-                }
-                moved
-            }
-            false => (places, Vec::new()),
+        let moved = |places: &PiecePlaces| match self.bend {
+            true => moving.moved_and_others(places),
+            false => ((places.clone(), Vec::new()), Vec::new()),
         };
-        boards.in_the_way(&places, body).into_iter().for_each(|what| cx.warn(what));
+        let named = sleeves.iter().flatten().map(|s| s.0.clone()).collect::<Vec<_>>();
+        let by = boards::raise(&boards::boards(&worn, &named, &places, &flat), &seams, body);
+        let mut others = Vec::new();
+        if by > 0.0 {
+            others.push(("as high as the pattern puts it", moved(&places).0.0));
+            places.values_mut().flatten().for_each(|p| p.y += by);
+            cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
+        }
+        let ((places, told), unmoved) = moved(&places);
+        others.extend(unmoved);
+        let start = |(told, places): (&str, PiecePlaces)| -> Result<GarmentStart, StageError> {
+            Ok(GarmentStart { told: told.into(), positions: finished(places)?.0 })
+        };
+        let starts = others.into_iter().map(start).collect::<Result<Vec<_>, _>>()?;
         let (points, laid) = finished(places)?;
         told.into_iter().chain(laid).for_each(|what| cx.note(what));
         cx.check()?;
         Ok(Garment { starts, ..whole(&offsets, seams, fabric, points) })
     }
 
-    /// PiecePlaces the pieces of a pattern that has no poses; every decision is told. What is still to
+    /// Places the pieces of a pattern that has no poses; every decision is told. What is still to
     /// be bent around an arm is named with its hand.
     fn stood(
         &self,
@@ -190,39 +192,6 @@ impl Arrange {
             -lowest * 1e2,
             by * 1e2
         ));
-    }
-}
-
-/// The names of the sleeves that were placed without a pose.
-fn names(sleeves: Option<&[(String, Hand)]>) -> Vec<String> {
-    sleeves.unwrap_or_default().iter().map(|s| s.0.clone()).collect()
-}
-
-/// What is asked of the pieces that stand flat.
-struct Flat<'a> {
-    pattern: &'a Pattern,
-    sleeves: Vec<String>,
-    seams: &'a [GarmentSeam],
-    offsets: &'a Offsets<'a>,
-}
-
-impl Flat<'_> {
-    fn boards<'p>(&'p self, places: &'p PiecePlaces) -> Vec<Board<'p>> {
-        boards::boards(self.pattern, &self.sleeves, places, self.offsets)
-    }
-
-    /// Raises a garment whose shoulder seams would start in the shoulders.
-    fn raise(&self, places: &mut PiecePlaces, body: &Body, cx: &Context) {
-        let by = boards::raise(&self.boards(places), self.seams, body);
-        if by > 0.0 {
-            places.values_mut().flatten().for_each(|p| p.y += by);
-            cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
-        }
-    }
-
-    /// A sentence for each seam that the body stands between.
-    fn in_the_way(&self, places: &PiecePlaces, body: &Body) -> Vec<String> {
-        boards::in_the_way(&self.boards(places), self.seams, body)
     }
 }
 

@@ -6,6 +6,8 @@
 //! the edge detector found. Cost: a fit of each template, some hundredths of a second. Limits: as
 //! those of the templates; nothing is straightened, and sleeves stay part of front and back.
 
+mod threads;
+
 use super::block::template::fit::Fit;
 use super::block::template::form::{Form, LONG, TEE, VEST};
 use super::block::{Block, BlockStyle, Fitted, LAY, Layer, Stand, check_wearable, no_front};
@@ -127,6 +129,9 @@ impl Outline {
             piece.body_part = Some(BodyPart::Body);
             piece.pose = Some(pose(laid, body)?);
         }
+        threads::in_the_way(&outlines, &pattern, &plan.seams, body)
+            .into_iter()
+            .for_each(|what| cx.warn(what));
         Ok((pattern, outlines, plan))
     }
 }

@@ -179,7 +179,7 @@ fn check_direction(outlines: &BTreeMap<String, Outline>, seam: &Seam) -> Result<
         let points = find(outlines, side)?;
         Ok::<_, StageError>(evenly(&points).map(|q| Point2::new(sign * q.x, q.y)))
     });
-    let (a, b) = (a?, b?);
+    let (a, b): ([Point2; THREADS], [Point2; THREADS]) = (a?, b?);
     // Only the run of the edges counts, not how far the panels lie apart.
     let centre = |t: &[Point2; THREADS]| t.iter().map(|p| p.coords).sum::<Vector2>() / THREADS as f64;
     let apart = centre(&b) - centre(&a);
@@ -199,10 +199,10 @@ fn check_direction(outlines: &BTreeMap<String, Outline>, seam: &Seam) -> Result<
 }
 
 /// Points of a polyline at equal steps of its length, both ends included.
-fn evenly(points: &[Point2]) -> [Point2; THREADS] {
+pub(in crate::style) fn evenly<const N: usize>(points: &[Point2]) -> [Point2; N] {
     let total = polyline_length(points);
     std::array::from_fn(|k| {
-        let mut left = total * k as f64 / (THREADS - 1) as f64;
+        let mut left = total * k as f64 / (N - 1) as f64;
         for w in points.windows(2) {
             let piece = (w[1] - w[0]).norm();
             if left <= piece && piece > 0.0 {

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toile_core::artifact::Outline;
 use toile_core::prelude::*;
+use toile_fixtures::mannequin;
 
 /// A sample's true outline and its edges' names and lengths in mm.
 fn truth(garment: &str, side: &str) -> (Outline, Vec<(String, f64)>) {
@@ -400,4 +401,20 @@ proptest! {
             }
         }
     }
+}
+
+/// The warnings about a T-shirt on a mannequin.
+fn warnings(body: &str) -> Vec<String> {
+    let cx = Context::quiet();
+    style("tshirt").run(set("tshirt", |o| o), &mannequin(body).unwrap(), &cx).unwrap();
+    cx.take_remarks().warnings
+}
+
+#[test]
+fn sleeves_take_the_arms_between_them() {
+    assert_eq!(warnings("()"), Vec::<String>::new());
+    let hanging = warnings("(arm_angle: 30)");
+    let start = "the seam front.underarm_left + back.underarm_left starts with the body between ";
+    let end = " % of it; arms spread like the sleeves would free it (the mannequin's `arm_angle`)";
+    assert!(hanging[0].starts_with(start) && hanging[0].ends_with(end), "{hanging:?}");
 }

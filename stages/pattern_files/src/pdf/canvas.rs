@@ -1,5 +1,6 @@
 //! Lines and texts on a page, millimetres from its lower left corner, y up.
 
+use crate::drawing::{DrawingSurface, Style, TextAnchor, Type};
 use crate::font;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Name, Str};
@@ -12,72 +13,6 @@ pub(super) const BOLD: Name<'static> = Name(b"F2");
 pub(super) const SHEET: Name<'static> = Name(b"S");
 /// Control points of a quarter of a circle, as a share of its radius.
 const QUARTER: f64 = 0.552_284_75;
-
-/// How a line is drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Style {
-    /// Its width, mm.
-    pub width: f64,
-    /// From black at 0 to white at 1.
-    pub grey: f64,
-    /// Lengths of dashes and of gaps, mm; empty for a solid line.
-    pub dash: &'static [f32],
-}
-
-impl Style {
-    pub(super) const fn solid(width: f64) -> Self {
-        Style { width, grey: 0.0, dash: &[] }
-    }
-
-    pub(super) const fn dashed(width: f64, dash: &'static [f32]) -> Self {
-        Style { width, grey: 0.0, dash }
-    }
-
-    pub(super) const fn grey(self, grey: f64) -> Self {
-        Style { grey, ..self }
-    }
-}
-
-/// Where a text is held: at its start or its middle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum TextAnchor {
-    Start,
-    Middle,
-}
-
-/// How a text is set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Type {
-    /// Its size, mm.
-    pub size: f64,
-    pub bold: bool,
-    pub hold: TextAnchor,
-    /// Whether it runs upwards.
-    pub upright: bool,
-    pub grey: f64,
-}
-
-impl Type {
-    pub(super) const fn plain(size: f64) -> Self {
-        Type { size, bold: false, hold: TextAnchor::Start, upright: false, grey: 0.0 }
-    }
-
-    pub(super) const fn bold(size: f64) -> Self {
-        Type { bold: true, ..Type::plain(size) }
-    }
-
-    pub(super) const fn held(self, hold: TextAnchor) -> Self {
-        Type { hold, ..self }
-    }
-
-    pub(super) const fn grey(self, grey: f64) -> Self {
-        Type { grey, ..self }
-    }
-
-    pub(super) const fn upright(self, upright: bool) -> Self {
-        Type { upright, ..self }
-    }
-}
 
 /// What is drawn on a page.
 pub(super) struct Canvas(pub Content);
@@ -116,9 +51,10 @@ impl Canvas {
             };
         }
     }
+}
 
-    /// An open line.
-    pub(super) fn line(&mut self, points: &[[f64; 2]], style: Style) {
+impl DrawingSurface for Canvas {
+    fn line(&mut self, points: &[[f64; 2]], style: Style) {
         if points.len() > 1 {
             self.set(style);
             self.path(points);
@@ -126,8 +62,7 @@ impl Canvas {
         }
     }
 
-    /// A closed line.
-    pub(super) fn closed(&mut self, points: &[[f64; 2]], style: Style) {
+    fn closed(&mut self, points: &[[f64; 2]], style: Style) {
         if points.len() > 1 {
             self.set(style);
             self.path(points);
@@ -135,8 +70,7 @@ impl Canvas {
         }
     }
 
-    /// A filled polygon.
-    pub(super) fn filled(&mut self, points: &[[f64; 2]], grey: f64) {
+    fn filled(&mut self, points: &[[f64; 2]], grey: f64) {
         if points.len() > 2 {
             self.0.set_fill_gray(grey as f32);
             self.path(points);
@@ -144,8 +78,7 @@ impl Canvas {
         }
     }
 
-    /// A circle, white inside.
-    pub(super) fn circle(&mut self, [x, y]: [f64; 2], r: f64, style: Style) {
+    fn circle(&mut self, [x, y]: [f64; 2], r: f64, style: Style) {
         self.set(style);
         self.0.set_fill_gray(1.0);
         let c = r * QUARTER;
@@ -163,8 +96,7 @@ impl Canvas {
         self.0.close_fill_nonzero_and_stroke();
     }
 
-    /// A text whose base line begins, is halved or ends there.
-    pub(super) fn text(&mut self, [x, y]: [f64; 2], kind: Type, text: &str) {
+    fn text(&mut self, [x, y]: [f64; 2], kind: Type, text: &str) {
         let width = font::width(text, kind.size, kind.bold);
         let back = match kind.hold {
             TextAnchor::Start => 0.0,

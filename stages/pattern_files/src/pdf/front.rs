@@ -1,10 +1,11 @@
 //! The first page: a square to measure, what the lines mean, how the pages are joined. And the
 //! sheet in one piece.
 
-use super::canvas::{Canvas, SHEET, Style, TextAnchor, Type};
-use super::sheet::{CUT, DOTTED, FOLD, PatternSheet, SEW, THIN};
+use super::canvas::{Canvas, SHEET};
+use super::sheet::PatternSheet;
 use super::tiles::{OVERLAP, Tiles};
 use super::{Paper, PdfPage};
+use crate::drawing::{CUT, DOTTED, DrawingSurface, FOLD, SEW, Style, THIN, TextAnchor, Type};
 use crate::font::{shortened, wrapped};
 use crate::options::DrawingOptions;
 use toile_core::artifact::Pattern;

@@ -3,9 +3,9 @@
 //! The first page has a square of 100 mm to measure, what the lines mean and how the pages are
 //! joined; then come what is cut and in what order it is sewn; then the pieces. On these: the cut
 //! line solid, the line that is sewn along dashed, grain line, fold lines, notches, drill holes,
-//! names, and the number of each seam at all its edges. [`sheet`] lays and draws the pieces,
-//! [`tiles`] cuts the sheet into pages, [`front`] and [`order`] are the pages with words,
-//! [`canvas`] draws.
+//! names, and the number of each seam at all its edges. [`paper`] knows the sizes of pages,
+//! [`sheet`] lays the pieces, [`tiles`] cuts the sheet into pages, [`front`] and [`order`] are the
+//! pages with words, [`canvas`] draws.
 //!
 //! Cost: some ten milliseconds a piece. Limits: letters of Western Europe, others are question
 //! marks, which is told; one size; every piece is cut once, no pieces are folded.
@@ -13,15 +13,18 @@
 mod canvas;
 mod front;
 mod order;
+mod paper;
 mod sheet;
 mod tiles;
 
 use crate::allowance::cut_lines;
+use crate::drawing::unknown_letters;
 use crate::error::{WriteError, writable};
 use crate::font;
 use crate::options::DrawingOptions;
 use crate::written::Written;
 use canvas::{Canvas, POINTS};
+pub use paper::Paper;
 use pdf_writer::{Chunk, Finish, Name, Pdf, Rect, Ref, TextStr};
 use sheet::PatternSheet;
 use tiles::Tiles;
@@ -35,27 +38,6 @@ const LONGEST: f64 = 14_400.0 / POINTS;
 /// margins, then wider ones.
 const WIDTHS: [f64; 5] = [890.0, 1500.0, 2500.0, 4000.0, LONGEST];
 
-/// What a pattern is printed on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Paper {
-    /// Pages of 210 mm by 297 mm, joined.
-    A4,
-    /// Pages of 8.5 inches by 11 inches, joined.
-    Letter,
-    /// One sheet as large as it must be, after pages of A4 with what is written.
-    OnePiece,
-}
-
-impl Paper {
-    /// Width and height of its pages with words, mm.
-    fn size(self) -> [f64; 2] {
-        match self {
-            Paper::A4 | Paper::OnePiece => [210.0, 297.0],
-            Paper::Letter => [215.9, 279.4],
-        }
-    }
-}
-
 /// A page: its size, mm, and what is drawn on it.
 struct PdfPage {
     size: [f64; 2],
@@ -66,9 +48,11 @@ struct PdfPage {
 ///
 /// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
 /// [`FARTHEST`](crate::FARTHEST); a seam allowance that cannot be cut; more than [`MOST_PAGES`]
-/// pages; a sheet in one piece that is longer than 5.08 m.
+/// pages; a page, or a sheet in one piece, that is longer than 5.08 m; a page that is too small for
+/// its margins and the test square.
 pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &DrawingOptions) -> Result<Written, WriteError> {
     writable(pattern)?;
+    paper.check()?;
     let cut = cut_lines(pattern, &options.allowances)?;
     let mut sheet = PatternSheet::new(pattern, &cut, options);
     let tiles = match paper {
@@ -76,7 +60,7 @@ pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &DrawingOptions) -> Resu
             one_piece(&mut sheet)?;
             None
         }
-        Paper::A4 | Paper::Letter => {
+        _ => {
             let tiles = Tiles::lay(&mut sheet, paper, MOST_PAGES);
             Some(tiles.map_err(|pages| WriteError::Pages { pages, most: MOST_PAGES })?)
         }
@@ -96,7 +80,7 @@ pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &DrawingOptions) -> Resu
         None => pages.push(front::whole(pattern, &sheet)),
     }
     let mut warnings = cut.notes;
-    warnings.extend(unknown_letters(pattern));
+    warnings.extend(unknown_letters(names(pattern), font::holds));
     let bytes = document(&pattern.name, pages, drawing, sheet.size);
     Ok(Written { bytes, seams: String::new(), notes: Vec::new(), warnings })
 }
@@ -116,14 +100,11 @@ fn one_piece(sheet: &mut PatternSheet<'_>) -> Result<(), WriteError> {
     Err(fault)
 }
 
-/// Tells names that the fonts cannot show.
-fn unknown_letters(pattern: &Pattern) -> Option<String> {
+/// The pattern's name, and those of its pieces and edges.
+fn names(pattern: &Pattern) -> impl Iterator<Item = &String> {
     let pieces = pattern.pieces.iter().map(|p| &p.name);
     let edges = pattern.pieces.iter().flat_map(|p| p.outer.edges.iter().map(|e| &e.name));
-    let names = std::iter::once(&pattern.name).chain(pieces).chain(edges);
-    let count = names.filter(|n| !font::holds(n)).count();
-    (count > 0)
-        .then(|| format!("{count} names have letters that the fonts do not: question marks stand for them"))
+    std::iter::once(&pattern.name).chain(pieces).chain(edges)
 }
 
 /// The file: both fonts, the sheet as a drawing that pages share, and the pages.

@@ -1,8 +1,9 @@
 //! The pages with what is cut and in what order it is sewn.
 
-use super::canvas::{Canvas, Style, TextAnchor, Type};
+use super::canvas::Canvas;
 use super::front::MARGIN;
-use super::sheet::{PatternSheet, allowance};
+use super::sheet::PatternSheet;
+use crate::drawing::{DrawingSurface, Style, TextAnchor, Type, allowance};
 use crate::font::wrapped;
 use toile_core::artifact::{EdgeUse, Pattern, PatternSeam, SeamKind};
 

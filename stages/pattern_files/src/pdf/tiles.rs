@@ -6,8 +6,9 @@
 //! nothing on it is left out.
 
 use super::Paper;
-use super::canvas::{Canvas, SHEET, Style, TextAnchor, Type};
+use super::canvas::{Canvas, SHEET};
 use super::sheet::PatternSheet;
+use crate::drawing::{DrawingSurface, Style, TextAnchor, Type};
 use toile_core::artifact::Point2;
 
 /// What printers leave white around a page, mm.
@@ -62,7 +63,7 @@ impl Tiles {
         let tiles = Tiles::of(sheet, paper, step, most)?;
         // The upper edge of the sheet is that of the first row.
         let up = tiles.rows as f64 * step[1] - sheet.size[1];
-        sheet.pieces.iter_mut().for_each(|p| p.raise(up));
+        sheet.pieces.iter_mut().for_each(|p| p.corner[1] += up);
         Ok(tiles)
     }
 

@@ -109,11 +109,17 @@ pub(crate) fn outline(edges: &[(String, Vec<Point2>)]) -> Vec<Point2> {
 /// How far the outlines of a piece and of a drawn one are apart, their lower left corners laid on
 /// each other, metres.
 pub(crate) fn apart(piece: &Piece, drawn: &[(String, Vec<Point2>)]) -> f64 {
-    let low = |points: Vec<Point2>| {
-        let lo = points.iter().fold(points[0], |a, b| a.inf(b));
-        points.iter().map(|q| q - lo.coords).collect::<Vec<_>>()
-    };
-    let (a, b) = (low(piece.outer.points().0), low(outline(drawn)));
+    polygons_apart(&at_origin(&piece.outer.points().0), &at_origin(&outline(drawn)))
+}
+
+/// Points with the lower left corner of their box at the origin.
+pub(crate) fn at_origin(points: &[Point2]) -> Vec<Point2> {
+    let lo = points.iter().fold(points[0], |a, b| a.inf(b));
+    points.iter().map(|q| q - lo.coords).collect()
+}
+
+/// How far two closed lines are apart.
+pub(crate) fn polygons_apart(a: &[Point2], b: &[Point2]) -> f64 {
     let far = |from: &[Point2], to: &[Point2]| {
         let n = to.len();
         let chord = |q: Point2, k: usize| {
@@ -124,7 +130,7 @@ pub(crate) fn apart(piece: &Piece, drawn: &[(String, Vec<Point2>)]) -> f64 {
         let nearest = |q: &Point2| (0..n).map(|k| chord(*q, k)).fold(f64::INFINITY, f64::min);
         from.iter().map(nearest).fold(0.0, f64::max)
     };
-    far(&a, &b).max(far(&b, &a))
+    far(a, b).max(far(b, a))
 }
 
 /// The two sides of a stitch, each a panel and the number of its edge, and whether start meets

@@ -1,6 +1,7 @@
 //! Patterns drawn at random: nothing panics, names come back, files are well formed.
 
 use crate::common::*;
+use crate::plots::{plot, read_plt};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 use toile_core::artifact::*;
@@ -8,6 +9,7 @@ use toile_pattern_files::allowance::Allowances;
 use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::pdf::{Paper, to_pdf};
+use toile_pattern_files::plt::{Plot, PlotCode, to_plt};
 use toile_pattern_files::svg::to_svg;
 use toile_pattern_files::{DrawingOptions, WriteError};
 
@@ -187,6 +189,17 @@ proptest! {
                 let texts = tags(&dxf.bytes);
                 let named = texts.iter().filter(|(code, text)| *code == 1 && text.starts_with("Piece Name: ")).count();
                 prop_assert_eq!(named, pattern.pieces.len());
+            }
+            for code in [PlotCode::Hpgl, PlotCode::Hpgl2] {
+                let plot = Plot { code, width: 2.0, ..plot() };
+                match to_plt(&pattern, &plot, options) {
+                    Ok(plt) => {
+                        let pages = read_plt(&plt.bytes);
+                        let mut points = pages.iter().flatten().flat_map(|t| &t.points);
+                        prop_assert!(points.all(|q| q[0] >= 0 && (0..=80_000).contains(&q[1])));
+                    }
+                    Err(e) => prop_assert!(matches!(e, WriteError::Roll { .. }), "{e}"),
+                }
             }
             for paper in [Paper::A4, Paper::OnePiece] {
                 if let Ok(pdf) = to_pdf(&pattern, paper, options) {

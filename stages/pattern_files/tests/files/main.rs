@@ -3,6 +3,8 @@
 
 mod common;
 mod fuzz;
+mod pages;
+mod plots;
 mod programs;
 mod pygarment;
 mod real;

@@ -1,11 +1,13 @@
 //! From a pattern to a file and back: outlines, names, stitches, seams beside the file.
 
 use crate::common::*;
+use crate::plots::plot;
 use toile_core::artifact::*;
 use toile_pattern_files::allowance::Allowances;
 use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::pdf::{Paper, to_pdf};
+use toile_pattern_files::plt::to_plt;
 use toile_pattern_files::svg::to_svg;
 use toile_pattern_files::{DrawingOptions, sidecar};
 
@@ -195,6 +197,7 @@ fn the_same_pattern_gives_the_same_bytes() {
             to_dxf(&pattern, Standard::Astm, &options).unwrap(),
             to_pdf(&pattern, Paper::A4, &options).unwrap(),
             to_pdf(&pattern, Paper::OnePiece, &options).unwrap(),
+            to_plt(&pattern, &plot(), &options).unwrap(),
         ]
     };
     assert_eq!(all(), all());

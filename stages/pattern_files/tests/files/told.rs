@@ -1,11 +1,13 @@
 //! What is refused and what is told, word for word.
 
 use crate::common::*;
+use crate::plots::plot;
 use toile_core::artifact::*;
 use toile_pattern_files::allowance::Allowances;
 use toile_pattern_files::dxf::{Standard, to_dxf};
 use toile_pattern_files::garment_code::to_json;
 use toile_pattern_files::pdf::{Paper, to_pdf};
+use toile_pattern_files::plt::to_plt;
 use toile_pattern_files::svg::to_svg;
 use toile_pattern_files::{DrawingOptions, WriteError, sidecar};
 
@@ -21,6 +23,7 @@ fn what_no_format_holds_is_refused_by_all() {
             to_svg(pattern, &DrawingOptions::default()).unwrap_err(),
             to_dxf(pattern, Standard::Aama, &DrawingOptions::default()).unwrap_err(),
             to_pdf(pattern, Paper::A4, &DrawingOptions::default()).unwrap_err(),
+            to_plt(pattern, &plot(), &DrawingOptions::default()).unwrap_err(),
         ];
         assert!(errors.iter().all(|e| *e == errors[0]));
         two_sided(errors[0].clone())
@@ -57,7 +60,7 @@ fn more_paper_than_there_is_is_refused() {
         two_sided(to_pdf(&large, Paper::A4, &options).unwrap_err()),
         (
             "the pieces need 1734 pages, 500 are the most".into(),
-            "write fewer pieces at a time, or in one piece"
+            "write fewer pieces at a time, on larger pages, or in one piece"
         )
     );
     assert_eq!(

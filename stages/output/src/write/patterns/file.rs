@@ -40,8 +40,7 @@ pub(crate) fn files(
     cx: &Context,
 ) -> Result<OutputFiles, StageError> {
     check_name(name)?;
-    let Written { bytes, seams, notes, warnings } =
-        written.map_err(|e| StageError::invalid(e.to_string()).hint(e.remedy()))?;
+    let Written { bytes, seams, notes, warnings } = written.map_err(refused)?;
     folded(notes).into_iter().for_each(|what| cx.note(what));
     folded(warnings).into_iter().for_each(|what| cx.warn(what));
     let mut files = vec![OutputFile::new(format!("{name}{ending}"), bytes)];
@@ -49,6 +48,21 @@ pub(crate) fn files(
         files.push(OutputFile::new(format!("{name}{ending}.seams.ron"), seams.into_bytes()));
     }
     Ok(OutputFiles(files))
+}
+
+/// Why a pattern is not written, with what can be done, at the parameter that decides it.
+pub(crate) fn refused(e: WriteError) -> StageError {
+    let error = StageError::invalid(e.to_string()).hint(e.remedy());
+    match e {
+        WriteError::Pages { .. }
+        | WriteError::Sheet { .. }
+        | WriteError::SmallPage { .. }
+        | WriteError::LargePage { .. } => error.at("paper"),
+        WriteError::Roll { .. } => error.at("width"),
+        WriteError::PlotPage { .. } => error.at("page_length"),
+        WriteError::PlotUnit { .. } => error.at("units"),
+        _ => error,
+    }
 }
 
 /// Sentences that differ in names and numbers alone, as one: the first, and how many more there

@@ -1,7 +1,7 @@
 //! Patterns as files: what is written, and that it is read back.
 #![allow(clippy::unwrap_used)]
 
-use crate::write::{PatternDxf, PatternJson, PatternPdf, PatternSvg};
+use crate::write::{PatternDxf, PatternJson, PatternPdf, PatternPlt, PatternSvg};
 use std::sync::Arc;
 use toile_core::Cancel;
 use toile_core::param::ron_options;
@@ -91,4 +91,35 @@ fn pages_are_a_pdf_and_a_wrong_name_is_refused() {
     let none =
         ron_options().from_str::<PatternPdf>("()").unwrap().run(&Pattern::default(), &Context::quiet());
     assert_eq!(none.unwrap_err().message, "the pattern has no pieces");
+}
+
+#[test]
+fn pages_of_any_size_are_asked_for_and_small_ones_refused() {
+    let pdf = |arguments: &str| {
+        let stage: PatternPdf = ron_options().from_str(arguments).unwrap();
+        stage.run(&skirt(), &Context::quiet()).map(written)
+    };
+    for paper in ["A0", "Legal", "Tabloid", "Custom(\"60 cm\", \"90 cm\")"] {
+        assert!(pdf(&format!("(paper: {paper})")).unwrap()[0].1.starts_with(b"%PDF-"));
+    }
+    let e = pdf("(paper: Custom(\"4 in\", \"6 in\"))").unwrap_err();
+    assert_eq!(
+        e.message,
+        "a page of 102 mm by 152 mm is too small for its margins and the test square: 200 mm by 210 mm are the least"
+    );
+}
+
+#[test]
+fn a_plot_is_written_and_a_roll_that_is_too_narrow_refused() {
+    let plt = |arguments: &str| {
+        let stage: PatternPlt = ron_options().from_str(arguments).unwrap();
+        stage.run(&skirt(), &Context::quiet()).map(written)
+    };
+    let files = plt("(name: \"roll\", cut_pen: 7, page_length: \"3 m\")").unwrap();
+    assert!(files.len() == 1 && files[0].0 == "roll.plt" && files[0].1.starts_with(b"IN;"));
+    assert!(files[0].1.windows(4).any(|w| w == b"SP7;"));
+    assert_eq!(files, plt("(name: \"roll\", cut_pen: 7, page_length: \"3 m\")").unwrap());
+    let e = plt("(width: \"10 cm\")").unwrap_err();
+    assert!(e.message.ends_with("across the roll, which is 100 mm wide"), "{}", e.message);
+    assert_eq!(e.param, Some("width"));
 }

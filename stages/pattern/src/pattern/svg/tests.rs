@@ -385,6 +385,14 @@ fn what_is_hidden_small_or_a_frame_is_no_piece() {
 }
 
 #[test]
+fn a_closed_line_without_length_is_no_piece() {
+    let p = one("<g id=\"front\"><path d=\"M 20,80 V 80 Z\"/><rect width=\"120\" height=\"120\"/></g>");
+    assert!((perimeter(&p) - 0.48).abs() < 1e-12);
+    let alone = read(&page("<g id=\"front\"><path d=\"M 20,80 V 80 Z\"/></g>"));
+    assert!(matches!(alone, Err(SvgDamage::NoPieces)), "{alone:?}");
+}
+
+#[test]
 fn the_seam_is_read_and_not_the_allowance_around_it() {
     let p = one(
         "<g id=\"front\"><path class=\"seam allowance\" d=\"M0 0 H120 V120 H0 Z\"/><path id=\"seam\" d=\"M10 10 H110 V110 H10 Z\"/></g>",

@@ -1,20 +1,17 @@
 //! Pieces that stand flat before the body and behind it, and the seams between them.
 //!
-//! A garment that starts with its shoulder seams in the shoulders would be sewn through them. It is
-//! raised as a whole until they are free. Where the body stands between the sides of another seam,
-//! as an arm does that is spread otherwise than the sleeve, it is told. Cost: some milliseconds.
+//! A garment that starts with its shoulder seams in the shoulders would be sewn through them, and
+//! slide down. It is raised as a whole until they are free. Cost: some milliseconds.
 
 use super::PiecePlaces;
-use super::depth::DepthMap;
 use crate::place::sew::Offsets;
+use toile_body::DepthMap;
 use toile_core::prelude::*;
 
-/// How far a garment is raised at most, and in what steps, metres.
-const RAISES: (u32, f64) = (30, 0.005);
-/// Distance that a seam should keep from the skin on its way, metres.
-const CLEARANCE: f64 = 0.006;
-/// Share of a seam's pairs that may have flesh between them; the cloth slips off a little.
-const MAX_BLOCKED: f64 = 0.5;
+/// The most steps by which a garment is raised.
+const MOST_STEPS: u32 = 30;
+/// One of them, metres.
+const STEP: f64 = 0.005;
 /// Depth within which a piece counts as flat, metres.
 const FLAT: f64 = 1e-6;
 
@@ -62,17 +59,15 @@ pub(super) fn boards<'a>(
     found.unwrap_or_default()
 }
 
-/// For each seam the places of its pairs that lie on either side of the trunk.
-type Threads<'s> = Vec<(&'s str, Vec<[Point3; 2]>)>;
-
-fn threads<'s>(boards: &[Board<'_>], seams: &'s [GarmentSeam]) -> Threads<'s> {
+/// The places of the pairs of seams between pieces on either side of the trunk.
+fn threads(boards: &[Board<'_>], seams: &[GarmentSeam]) -> Vec<[Point3; 2]> {
     let trunk = || boards.iter().filter(|b| !b.is_leg);
     let find = |v: u32| trunk().find_map(|b| Some((b.is_before(), b.place(v)?)));
     let across = |[a, b]: &[u32; 2]| {
         let ((one, p), (other, q)) = (find(*a)?, find(*b)?);
         (one != other).then_some([p, q])
     };
-    seams.iter().map(|s| (s.name.as_str(), s.pairs.iter().filter_map(across).collect())).collect()
+    seams.iter().flat_map(|s| &s.pairs).filter_map(across).collect()
 }
 
 /// How far the garment must be raised for its shoulder seams to be free, or most of them, metres.
@@ -81,44 +76,19 @@ pub(super) fn raise(boards: &[Board<'_>], seams: &[GarmentSeam], body: &Body) ->
     let (Some(shoulder), Some(armpit)) = (shoulder, armpit) else { return 0.0 };
     let (threads, depths) = (threads(boards, seams), DepthMap::new(body));
     let blocked = |by: f64| {
-        let over = |[p, q]: &&[Point3; 2]| {
-            let middle = nalgebra::center(p, q);
-            middle.x.abs() <= shoulder.x.abs() && middle.y + by > armpit.y
+        let is_blocked = |ends: &&[Point3; 2]| {
+            let [p, q] = ends.map(|p| p + Vector3::new(0.0, by, 0.0));
+            let middle = nalgebra::center(&p, &q);
+            middle.x.abs() <= shoulder.x.abs() && middle.y > armpit.y && depths.is_between(&p, &q)
         };
-        let pairs = threads.iter().flat_map(|t| &t.1).filter(over);
-        pairs.filter(|pair| is_blocked(&depths, pair, by)).count()
+        threads.iter().filter(is_blocked).count()
     };
-    let (most, step) = RAISES;
     let mut best = (blocked(0.0), 0);
-    for k in 1..=most {
+    for k in 1..=MOST_STEPS {
         if best.0 == 0 {
             break;
         }
-        best = best.min((blocked(f64::from(k) * step), k));
+        best = best.min((blocked(f64::from(k) * STEP), k));
     }
-    f64::from(best.1) * step
-}
-
-/// Whether the body stands between two places, raised by so much.
-fn is_blocked(depths: &DepthMap, [p, q]: &[Point3; 2], by: f64) -> bool {
-    let middle = nalgebra::center(p, q);
-    let (near, far) = (p.z.min(q.z), p.z.max(q.z));
-    let span = |dy: f64| depths.span(middle.x, middle.y + by + dy);
-    [-CLEARANCE, CLEARANCE].into_iter().filter_map(span).any(|(lo, hi)| near < hi && lo < far)
-}
-
-/// A sentence for each seam that starts with the body between its sides.
-pub(super) fn in_the_way(boards: &[Board<'_>], seams: &[GarmentSeam], body: &Body) -> Vec<String> {
-    let depths = DepthMap::new(body);
-    let told = |(name, pairs): (&str, Vec<[Point3; 2]>)| {
-        let blocked = pairs.iter().filter(|pair| is_blocked(&depths, pair, 0.0)).count();
-        (blocked as f64 > MAX_BLOCKED * pairs.len() as f64).then(|| {
-            format!(
-                "the seam {name} starts with the body between {blocked} of its {} pairs; arms spread like the \
-                 sleeves would free it (the mannequin's `arm_angle`)",
-                pairs.len()
-            )
-        })
-    };
-    threads(boards, seams).into_iter().filter_map(told).collect()
+    f64::from(best.1) * STEP
 }

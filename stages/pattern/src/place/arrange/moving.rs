@@ -21,7 +21,7 @@ pub(super) struct Moving<'a> {
     pub(super) clearance: f64,
 }
 
-/// PiecePlaces, and what was moved, in words.
+/// Places, and what was moved, in words.
 type Moved = (PiecePlaces, Vec<String>);
 
 impl Moving<'_> {

@@ -32,7 +32,7 @@ pub(super) fn without(pattern: &Pattern, patches: &BTreeSet<String>) -> Pattern 
     }
 }
 
-/// PiecePlaces every patch; a sentence each.
+/// Places every patch; a sentence each.
 ///
 /// Errors: patches that lie on each other in a ring.
 pub(super) fn lay(

@@ -6,10 +6,12 @@ use toile_core::artifact::{Body, Point3};
 
 /// Side of a bin, metres: about one triangle of a mannequin.
 const BIN: f64 = 0.02;
+/// Distance that a straight line should keep from the skin above and below, metres.
+const CLEARANCE: f64 = 0.006;
 
 /// The body as seen along z.
 #[derive(Debug)]
-pub(crate) struct DepthMap<'a> {
+pub struct DepthMap<'a> {
     body: &'a Body,
     origin: [f64; 2],
     counts: [usize; 2],
@@ -18,7 +20,7 @@ pub(crate) struct DepthMap<'a> {
 
 impl<'a> DepthMap<'a> {
     /// Bins a body.
-    pub(crate) fn new(body: &'a Body) -> Self {
+    pub fn new(body: &'a Body) -> Self {
         let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for p in &body.positions {
             lo = [lo[0].min(p.x), lo[1].min(p.y)];
@@ -50,8 +52,16 @@ impl<'a> DepthMap<'a> {
         (((at - self.origin[axis]) / BIN).max(0.0) as usize).min(self.counts[axis] - 1)
     }
 
+    /// Whether the body lies between two places, one before the other.
+    pub fn is_between(&self, p: &Point3, q: &Point3) -> bool {
+        let middle = nalgebra::center(p, q);
+        let (near, far) = (p.z.min(q.z), p.z.max(q.z));
+        let spans = [-CLEARANCE, CLEARANCE].into_iter().filter_map(|dy| self.span(middle.x, middle.y + dy));
+        spans.into_iter().any(|(lo, hi)| near < hi && lo < far)
+    }
+
     /// The least and the greatest z of the skin over (x, y); `None` beside the body.
-    pub(crate) fn span(&self, x: f64, y: f64) -> Option<(f64, f64)> {
+    pub fn span(&self, x: f64, y: f64) -> Option<(f64, f64)> {
         let bin = &self.bins[self.bin(1, y) * self.counts[0] + self.bin(0, x)];
         let hits = bin.iter().filter_map(|&t| {
             depth_at(self.body.triangles[t as usize].map(|v| self.body.positions[v as usize]), x, y)
