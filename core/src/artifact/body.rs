@@ -1,6 +1,6 @@
 //! The body that wears the garment.
 
-use super::{Artifact, ArtifactType, Kind, Measures, Point3, Vector3};
+use super::{Artifact, ArtifactType, Hand, Kind, Measures, Point3, Vector3};
 use crate::artifact::store::sound::{ensure, finite, finite_figure, indices};
 use std::collections::BTreeMap;
 
@@ -28,6 +28,11 @@ pub struct Body {
 }
 
 impl Body {
+    /// A landmark that it has on both sides: `neck`, `shoulder`, `armpit`, `elbow` or `wrist`.
+    pub fn landmark(&self, name: &str, hand: Hand) -> Option<Landmark> {
+        self.landmarks.get(&hand.name(name)).copied()
+    }
+
     /// Enclosed volume, cubic metres (divergence theorem).
     pub fn volume(&self) -> f64 {
         self.triangles

@@ -15,6 +15,7 @@ mod garment;
 mod garment_check;
 mod garment_sizes;
 mod geometry;
+mod hand;
 mod locate;
 mod mask;
 mod measures;
@@ -38,6 +39,7 @@ pub use figures::{
 pub use files::{OutputFile, OutputFiles};
 pub use garment::{Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, SeamState, SolveStatus, quantile};
 pub use geometry::{Point2, Point3, Vector2, Vector3, polygon_area, polyline_length};
+pub use hand::Hand;
 pub use locate::{Located, Locator};
 pub use mask::Mask;
 pub use measures::{Measure, Measures};
@@ -45,8 +47,8 @@ pub use model::{Material, Mesh, Model, Sheen, Texture, Variant};
 pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
 pub use pattern::{
-    BodyPart, EdgeCurve, EdgePath, EdgeUse, LinePurpose, Lowered, LoweringError, Notch, Pattern, PatternLoop,
-    PatternSeam, Piece, PieceEdge, PieceLine, Pose, lacking_stops,
+    BodyPart, EdgeCurve, EdgePath, EdgeRole, EdgeUse, LinePurpose, Lowered, LoweringError, Notch, Pattern,
+    PatternLoop, PatternSeam, Piece, PieceEdge, PieceLine, Pose, lacking_stops,
 };
 pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;

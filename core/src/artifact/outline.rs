@@ -2,7 +2,9 @@
 
 use nalgebra::Rotation2;
 
-use super::{Artifact, ArtifactType, Gauge, Kind, Measures, Point2, polygon_area, polyline_length};
+use super::{
+    Artifact, ArtifactType, EdgeRole, Gauge, Hand, Kind, Measures, Point2, polygon_area, polyline_length,
+};
 use crate::artifact::store::sound::{ensure, finite, positive};
 
 /// A closed polygon, not repeating its first point. The outer loop runs counter-clockwise, holes
@@ -159,6 +161,11 @@ impl Outline {
     /// The edge of that name.
     pub fn edge(&self, name: &str) -> Option<&Edge> {
         self.edges.iter().find(|e| e.name == name)
+    }
+
+    /// The edge of that role, on that side of the wearer where the outline has one on each.
+    pub fn edge_of(&self, role: EdgeRole, hand: Option<Hand>) -> Option<&Edge> {
+        self.edge(&role.name(hand))
     }
 
     /// The box around the outer loop: least and greatest corner.

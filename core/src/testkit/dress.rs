@@ -69,8 +69,9 @@ fn landmarks() -> BTreeMap<String, Landmark> {
         all.insert(format!("{name}_back"), Point3::new(0.0, y, -z));
     }
     for (name, x, y) in sides {
-        all.insert(format!("{name}_left"), Point3::new(x, y, 0.0));
-        all.insert(format!("{name}_right"), Point3::new(-x, y, 0.0));
+        for hand in Hand::BOTH {
+            all.insert(hand.name(name), Point3::new(hand.sign() * x, y, 0.0));
+        }
     }
     all.insert("crotch".into(), Point3::new(0.0, 0.78, 0.0));
     all

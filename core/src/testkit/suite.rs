@@ -57,9 +57,8 @@ fn behind(outline: &Outline) -> Outline {
 }
 
 fn other_side(name: &str) -> String {
-    match (name.strip_suffix("_left"), name.strip_suffix("_right")) {
-        (Some(stem), _) => format!("{stem}_right"),
-        (_, Some(stem)) => format!("{stem}_left"),
+    match Hand::split(name) {
+        (stem, Some(hand)) => hand.other().name(stem),
         _ => name.to_owned(),
     }
 }

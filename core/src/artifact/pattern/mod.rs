@@ -6,6 +6,7 @@ mod chain;
 mod check;
 mod curve;
 mod drawn;
+mod edge_role;
 mod lower;
 mod lowering_error;
 mod piece;
@@ -17,6 +18,7 @@ pub(in crate::artifact) mod tests;
 
 pub use chain::lacking_stops;
 pub use curve::{EdgeCurve, EdgePath};
+pub use edge_role::EdgeRole;
 pub use lower::Lowered;
 pub use lowering_error::LoweringError;
 pub use piece::{BodyPart, LinePurpose, Notch, PatternLoop, Piece, PieceEdge, PieceLine, Pose};

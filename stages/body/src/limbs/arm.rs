@@ -43,7 +43,7 @@ impl Arm {
     pub(crate) fn new(shape: &FigureShape) -> Self {
         let axis = axis(shape);
         let arm = arm(shape, &axis);
-        let hand = Hand::new(shape, &axis);
+        let hand = HandParts::new(shape, &axis);
         let (palm, fingers, webs, thumb) = (hand.palm(), hand.fingers(), hand.webs(), hand.thumb());
         let tips = fingers.iter().chain([&thumb]).flat_map(|l| l.axis().to_vec());
         let pad = Vector3::from([0.015 * hand.scale; 3]);
@@ -113,7 +113,7 @@ fn arm(shape: &FigureShape, [joint, elbow, wrist]: &[Point3; 3]) -> Loft {
 }
 
 /// Makes the parts of a hand.
-struct Hand {
+struct HandParts {
     wrist: Point3,
     along: Vector3,
     /// To the thumb.
@@ -123,12 +123,12 @@ struct Hand {
     scale: f64,
 }
 
-impl Hand {
+impl HandParts {
     fn new(shape: &FigureShape, axis: &[Point3; 3]) -> Self {
         let along = (axis[2] - axis[1]).normalize();
         let out = (Vector3::z() - along * along.z).normalize();
         let scale = shape.stature * shape.form.hand;
-        Hand { wrist: axis[2], along, out, down: along.cross(&out), scale }
+        HandParts { wrist: axis[2], along, out, down: along.cross(&out), scale }
     }
 
     fn at(&self, along: f64, out: f64, down: f64) -> Point3 {

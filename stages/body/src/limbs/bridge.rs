@@ -53,10 +53,7 @@ const CORNERS: usize = 3;
 /// When it is cancelled.
 pub fn bridged(body: &Body, width: f64, cx: &Context) -> Result<Option<Body>, StageError> {
     let height = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
-    let armpits: Vec<Point3> = ["armpit_left", "armpit_right"]
-        .iter()
-        .filter_map(|name| body.landmarks.get(*name).copied())
-        .collect();
+    let armpits: Vec<Point3> = Hand::BOTH.iter().filter_map(|hand| body.landmark("armpit", *hand)).collect();
     if armpits.is_empty() {
         return Ok(None);
     }
@@ -200,7 +197,8 @@ mod tests {
         for v in moved {
             let p = wide.positions[v];
             assert!(solid.nearest(&p.coords, 1.0).unwrap().distance > 0.5 * CLEAR, "{p}");
-            let near = ["armpit_left", "armpit_right"].iter().any(|a| (p - body.landmarks[*a]).norm() < 0.25);
+            let near =
+                Hand::BOTH.iter().any(|hand| (p - body.landmark("armpit", *hand).unwrap()).norm() < 0.25);
             assert!(near, "{p}");
         }
         let over = Solid::new(wide.positions.iter().map(|p| p.coords).collect(), &wide.triangles);

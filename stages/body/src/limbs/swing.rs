@@ -35,8 +35,7 @@ pub struct Swing([Option<SwingSide>; 2]);
 struct SwingSide {
     /// The axis passes through here.
     joint: Point3,
-    /// 1 for the left arm, which is at +X, and -1 for the right one.
-    outward: f64,
+    hand: Hand,
     /// Angles and where they come to lie: the trunk's end, the arm's two ends, the neck.
     knots: [[f64; 2]; 4],
     /// Slopes there.
@@ -49,8 +48,8 @@ impl Swing {
     /// Errors: a landmark of an arm is missing; there is no room between arm and trunk, or not so
     /// much of it.
     pub fn to(body: &Body, angle: f64) -> Result<Swing, StageError> {
-        let side = |name| SwingSide::new(name, ArmAngles::of(body, name)?, angle).map(Some);
-        Ok(Swing([side("left")?, side("right")?]))
+        let side = |hand| SwingSide::new(ArmAngles::of(body, hand)?, angle).map(Some);
+        Ok(Swing([side(Hand::Left)?, side(Hand::Right)?]))
     }
 
     /// From the arms of a body to [`HANGING`], or as near to it as the trunk lets them; arms that
@@ -58,29 +57,29 @@ impl Swing {
     ///
     /// Errors: a landmark of an arm is missing.
     pub fn hanging(body: &Body) -> Result<Swing, StageError> {
-        let side = |name| {
-            let arm = ArmAngles::of(body, name)?;
+        let side = |hand| {
+            let arm = ArmAngles::of(body, hand)?;
             let to = HANGING.max(arm.least());
-            if to < arm.from { SwingSide::new(name, arm, to).map(Some) } else { Ok(None) }
+            if to < arm.from { SwingSide::new(arm, to).map(Some) } else { Ok(None) }
         };
-        Ok(Swing([side("left")?, side("right")?]))
+        Ok(Swing([side(Hand::Left)?, side(Hand::Right)?]))
     }
 
     /// From the arms of a body to those of the same body in another pose.
     ///
     /// Errors: those of [`Swing::to`]; the elbows are not as far from the shoulders as before.
     pub fn between(before: &Body, after: &Body) -> Result<Swing, StageError> {
-        let side = |name| {
-            let arm = ArmAngles::of(before, name)?;
-            let [r, to] = arm.joint.polar(&mark(after, "elbow", name)?);
-            let [before_r, _] = arm.joint.polar(&mark(before, "elbow", name)?);
+        let side = |hand| {
+            let arm = ArmAngles::of(before, hand)?;
+            let [r, to] = arm.joint.polar(&mark(after, "elbow", hand)?);
+            let [before_r, _] = arm.joint.polar(&mark(before, "elbow", hand)?);
             if (r - before_r).abs() > SAME {
                 return Err(StageError::invalid("the two bodies are not one body in two poses")
                     .hint("let `PoseBody` take the body that the garment was draped on"));
             }
-            if (to - arm.from).abs() < 1e-12 { Ok(None) } else { SwingSide::new(name, arm, to).map(Some) }
+            if (to - arm.from).abs() < 1e-12 { Ok(None) } else { SwingSide::new(arm, to).map(Some) }
         };
-        Ok(Swing([side("left")?, side("right")?]))
+        Ok(Swing([side(Hand::Left)?, side(Hand::Right)?]))
     }
 
     /// Where a point comes to lie.
@@ -92,19 +91,19 @@ impl Swing {
 /// The middle of a shoulder, from which angles are taken.
 struct ShoulderJoint {
     at: Point3,
-    outward: f64,
+    hand: Hand,
 }
 
 impl ShoulderJoint {
-    fn of(body: &Body, side: &str) -> Result<ShoulderJoint, StageError> {
-        let at = nalgebra::center(&mark(body, "shoulder", side)?, &mark(body, "armpit", side)?);
-        Ok(ShoulderJoint { at, outward: if side == "left" { 1.0 } else { -1.0 } })
+    fn of(body: &Body, hand: Hand) -> Result<ShoulderJoint, StageError> {
+        let at = nalgebra::center(&mark(body, "shoulder", hand)?, &mark(body, "armpit", hand)?);
+        Ok(ShoulderJoint { at, hand })
     }
 
     /// Distance from the axis, and the angle from the downward vertical outwards, from -90 to 270
     /// degrees.
     fn polar(&self, p: &Point3) -> [f64; 2] {
-        let (out, down) = (self.outward * (p.x - self.at.x), self.at.y - p.y);
+        let (out, down) = (self.hand.sign() * (p.x - self.at.x), self.at.y - p.y);
         let angle = out.atan2(down);
         [out.hypot(down), if angle < -PI / 2.0 { angle + TAU } else { angle }]
     }
@@ -120,10 +119,10 @@ struct ArmAngles {
 }
 
 impl ArmAngles {
-    fn of(body: &Body, side: &str) -> Result<ArmAngles, StageError> {
-        let joint = ShoulderJoint::of(body, side)?;
-        let from = joint.polar(&mark(body, "elbow", side)?)[1];
-        let trunk = trunk_end(body, &joint, mark(body, "armpit", side)?);
+    fn of(body: &Body, hand: Hand) -> Result<ArmAngles, StageError> {
+        let joint = ShoulderJoint::of(body, hand)?;
+        let from = joint.polar(&mark(body, "elbow", hand)?)[1];
+        let trunk = trunk_end(body, &joint, mark(body, "armpit", hand)?);
         Ok(ArmAngles { joint, from, trunk })
     }
 
@@ -136,13 +135,14 @@ impl ArmAngles {
 }
 
 impl SwingSide {
-    fn new(side: &str, arm: ArmAngles, to: f64) -> Result<SwingSide, StageError> {
+    fn new(arm: ArmAngles, to: f64) -> Result<SwingSide, StageError> {
+        let hand = arm.joint.hand;
         let refused = |what: &str| {
-            let text = format!("at {:.0} degrees the {side} arm does not clear the {what}", to.to_degrees());
+            let text = format!("at {:.0} degrees the {hand} arm does not clear the {what}", to.to_degrees());
             StageError::invalid(text).at("arm_angle")
         };
         if arm.from - ARM <= arm.trunk {
-            return Err(StageError::invalid(format!("the body's {side} arm lies at its trunk"))
+            return Err(StageError::invalid(format!("the body's {hand} arm lies at its trunk"))
                 .hint("leave its pose as it is"));
         }
         // The least angle as it was found, but for rounding.
@@ -157,17 +157,17 @@ impl SwingSide {
         }
         let ArmAngles { joint, from, trunk } = arm;
         let knots = [[trunk; 2], [from - ARM, to - ARM], [from + ARM, to + ARM], [NECK; 2]];
-        Ok(SwingSide { joint: joint.at, outward: joint.outward, slopes: slopes(&knots), knots })
+        Ok(SwingSide { joint: joint.at, hand, slopes: slopes(&knots), knots })
     }
 
     fn place(&self, p: &Point3) -> Point3 {
-        let joint = ShoulderJoint { at: self.joint, outward: self.outward };
+        let joint = ShoulderJoint { at: self.joint, hand: self.hand };
         let [r, angle] = joint.polar(p);
         if angle <= self.knots[0][0] || angle >= self.knots[3][0] {
             return *p;
         }
         let (sin, cos) = self.turned(angle).sin_cos();
-        Point3::new(self.joint.x + self.outward * r * sin, self.joint.y - r * cos, p.z)
+        Point3::new(self.joint.x + self.hand.sign() * r * sin, self.joint.y - r * cos, p.z)
     }
 
     /// Where an angle between the outer knots comes to lie: the arm as one piece, beside it by a
@@ -206,15 +206,15 @@ fn trunk_end(body: &Body, joint: &ShoulderJoint, armpit: Point3) -> f64 {
     let end = |y: f64| {
         let loops = slice(&body.positions, &body.triangles, y);
         let [left, right, ..] = trunk(&loops, MIDDLE)?.bounds;
-        let x = if joint.outward > 0.0 { right } else { left };
+        let x = if joint.hand == Hand::Left { right } else { left };
         Some(joint.polar(&Point3::new(x, y, joint.at.z))[1])
     };
     slices.filter_map(end).fold(0.0, f64::max)
 }
 
-fn mark(body: &Body, name: &str, side: &str) -> Result<Point3, StageError> {
-    let name = format!("{name}_{side}");
-    body.landmarks.get(&name).copied().ok_or_else(|| {
+fn mark(body: &Body, name: &str, hand: Hand) -> Result<Point3, StageError> {
+    body.landmark(name, hand).ok_or_else(|| {
+        let name = hand.name(name);
         StageError::invalid(format!("the body has no landmark `{name}`, so its arms cannot be moved"))
             .hint("give the body that landmark, or leave its pose as it is")
     })
@@ -234,13 +234,13 @@ mod tests {
 
     /// Angle of an upper arm against the vertical, degrees.
     fn angle(body: &Body) -> f64 {
-        ShoulderJoint::of(body, "left").unwrap().polar(&body.landmarks["elbow_left"])[1].to_degrees()
+        ShoulderJoint::of(body, Hand::Left).unwrap().polar(&body.landmarks["elbow_left"])[1].to_degrees()
     }
 
     #[test]
     fn arms_come_to_the_angle_and_the_trunk_stays() {
         let body = mannequin();
-        let joint = ShoulderJoint::of(&body, "left").unwrap();
+        let joint = ShoulderJoint::of(&body, Hand::Left).unwrap();
         let swing = Swing::to(&body, 25.0_f64.to_radians()).unwrap();
         let elbow = swing.place(&body.landmarks["elbow_left"]);
         assert!((joint.polar(&elbow)[1].to_degrees() - 25.0).abs() < 1e-9);
@@ -303,7 +303,7 @@ mod tests {
         fn angles_keep_their_order(to in 20.0..160.0_f64, a in -80.0..260.0_f64, step in 0.01..10.0_f64) {
             let body = BODY.with(Clone::clone);
             let swing = Swing::to(&body, to.to_radians()).unwrap();
-            let joint = ShoulderJoint::of(&body, "left").unwrap();
+            let joint = ShoulderJoint::of(&body, Hand::Left).unwrap();
             let at = |degrees: f64| {
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 let p = Point3::new(joint.at.x + 0.3 * sin, joint.at.y - 0.3 * cos, 0.0);
@@ -317,11 +317,11 @@ mod tests {
     fn arms_hang_as_low_as_the_trunk_lets_them() {
         let hung = |body: &Body| {
             let elbow = Swing::hanging(body).unwrap().place(&body.landmarks["elbow_left"]);
-            ShoulderJoint::of(body, "left").unwrap().polar(&elbow)[1].to_degrees()
+            ShoulderJoint::of(body, Hand::Left).unwrap().polar(&elbow)[1].to_degrees()
         };
         assert!((hung(&mannequin()) - 28.0).abs() < 1e-6);
         let wide = Mannequin::made(1.7, [1.2, 1.28, 1.35], 70.0, 0.016).run(&Context::quiet()).unwrap();
-        let least = ArmAngles::of(&wide, "left").unwrap().least().to_degrees();
+        let least = ArmAngles::of(&wide, Hand::Left).unwrap().least().to_degrees();
         assert!((hung(&wide) - least.max(28.0)).abs() < 1e-6, "{least} {}", hung(&wide));
         assert!(Swing::to(&wide, (least + 0.1).to_radians()).is_ok());
         assert!(Swing::to(&wide, (least - 0.1).to_radians()).is_err());

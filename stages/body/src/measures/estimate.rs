@@ -9,7 +9,7 @@
 use crate::measures::landmarks::bisect;
 use crate::skin::slice::{SliceLoop, slice, trunk};
 use std::collections::BTreeMap;
-use toile_core::artifact::{Landmark, Point3};
+use toile_core::artifact::{Hand, Landmark, Point3};
 
 /// Slices from sole to crown.
 const SLICES: usize = 320;
@@ -49,14 +49,15 @@ pub(crate) fn estimate(
     }
     let (front, back) = survey.whole(crotch).ok_or("crotch")?;
     marks.insert("crotch".into(), Point3::new(0.0, crotch, (front + back) / 2.0));
-    for (name, sign) in [("left", 1.0), ("right", -1.0)] {
-        for (part, p) in survey.arm(sign, armpit, neck).ok_or("arms")? {
-            marks.insert(format!("{part}_{name}"), p);
+    for hand in Hand::BOTH {
+        for (part, p) in survey.arm(hand, armpit, neck).ok_or("arms")? {
+            marks.insert(hand.name(part), p);
         }
     }
     let girths = [("height", height), ("bust", bust.1.girth), ("waist", waist.1.girth), ("hip", hip.1.girth)];
     let mut lengths: BTreeMap<String, f64> = girths.map(|(n, v)| (n.to_owned(), v)).into();
-    lengths.insert("shoulder_width".into(), (marks["shoulder_left"] - marks["shoulder_right"]).norm());
+    let [left, right] = Hand::BOTH.map(|hand| marks[&hand.name("shoulder")]);
+    lengths.insert("shoulder_width".into(), (left - right).norm());
     Ok((marks, lengths))
 }
 
@@ -105,10 +106,11 @@ impl<'a> Survey<'a> {
     }
 
     /// Neck point, shoulder point, armpit, elbow and wrist of one side.
-    fn arm(&self, sign: f64, armpit: f64, neck: &(f64, SliceLoop)) -> Option<Vec<(&'static str, Point3)>> {
+    fn arm(&self, hand: Hand, armpit: f64, neck: &(f64, SliceLoop)) -> Option<Vec<(&'static str, Point3)>> {
         let ring = |y: f64| self.rings.iter().rfind(|r| r.0 <= y).map(|r| &r.1);
         let below = ring(armpit)?;
-        let side = |l: &SliceLoop| if sign > 0.0 { l.bounds[1] } else { l.bounds[0] };
+        let sign = hand.sign();
+        let side = |l: &SliceLoop| l.bounds[usize::from(hand == Hand::Left)];
         let (half, inner) = (side(below).abs(), side(&neck.1).abs());
         let ridge = |x: f64| self.ridge(sign * x, neck.0 + 0.04 * self.height);
         let shoulder = ridge(self.shoulder_x(inner, half, &ridge)?)?;

@@ -115,13 +115,13 @@ fn finish(
 ) -> Result<Body, StageError> {
     let [biceps, thigh] = limbs(figure, &skin, &landmarks).ok_or_else(|| unfit("limbs"))?;
     let [hip, waist, bust, neck, arm, inseam] = found;
-    let across = landmarks.get("shoulder_left").zip(landmarks.get("shoulder_right"));
+    let [left, right] = Hand::BOTH.map(|hand| landmarks.get(&hand.name("shoulder")));
     let measured = [
         ("height", figure.size().height),
         ("bust", bust),
         ("waist", waist),
         ("hip", hip),
-        ("shoulder_width", across.map_or(f64::NAN, |(a, b)| (a - b).norm())),
+        ("shoulder_width", left.zip(right).map_or(f64::NAN, |(a, b)| (a - b).norm())),
         ("neck", neck),
         ("arm_length", arm),
         ("inseam", inseam),

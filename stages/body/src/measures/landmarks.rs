@@ -4,7 +4,7 @@ use crate::figure::BodyFigure;
 use crate::shape::level;
 use crate::skin::slice::{SliceLoop, slice, trunk};
 use std::collections::BTreeMap;
-use toile_core::artifact::{Landmark, Point3};
+use toile_core::artifact::{Hand, Landmark, Point3};
 
 /// Halvings by which a level is looked for: a tenth of a millimetre on a metre.
 const HALVINGS: usize = 13;
@@ -53,8 +53,9 @@ pub(crate) fn landmarks(
         ("neck", ridge(positions, triangles, neck * 1.15, chin)?),
     ];
     for (name, p) in left {
-        marks.insert(format!("{name}_left"), p);
-        marks.insert(format!("{name}_right"), Point3::new(-p.x, p.y, p.z));
+        for hand in Hand::BOTH {
+            marks.insert(hand.name(name), Point3::new(hand.sign() * p.x, p.y, p.z));
+        }
     }
     Some(marks)
 }

@@ -10,7 +10,7 @@ use crate::shape::{FigureSize, level};
 use crate::skin::slice::{SliceLoop, convex_hull, slice, trunk};
 use crate::skin::topology::SkinMesh;
 use nalgebra::{Rotation3, Unit};
-use toile_core::artifact::{Point2, Point3, Vector3};
+use toile_core::artifact::{Hand, Point2, Point3, Vector3};
 
 /// Rays of a tape around the smooth figure: a polygon of so many corners is short by 0.04 %.
 const RAYS: usize = 64;
@@ -121,8 +121,9 @@ pub(crate) fn meshed(figure: &BodyFigure, mesh: &SkinMesh, marks: &NamedLandmark
     let (positions, triangles) = mesh;
     let level = |l: f64| trunk(&slice(positions, triangles, figure.y(l)), 0.0).map(|r| r.girth);
     let (middle, along) = figure.neck();
-    let across = |a: &str, b: &str| Some((marks.get(a)? - marks.get(b)?).norm());
-    let arm = across("shoulder_left", "elbow_left")? + across("elbow_left", "wrist_left")?;
+    let at = |name: &str| marks.get(&Hand::Left.name(name));
+    let (shoulder, elbow, wrist) = (at("shoulder")?, at("elbow")?, at("wrist")?);
+    let arm = (shoulder - elbow).norm() + (elbow - wrist).norm();
     Some([
         level(level::HIP)?,
         level(level::WAIST)?,

@@ -77,19 +77,14 @@ struct SlicedTriangle {
 
 /// Where the arms' axes pass a height, (x, z).
 fn arms(body: &Body, y: f64) -> Vec<Point2> {
-    let crossing = |(from, to): (&str, &str)| {
-        let (a, b) = (body.landmarks.get(from)?, body.landmarks.get(to)?);
+    let crossing = |(hand, from, to): (Hand, &str, &str)| {
+        let (a, b) = (body.landmark(from, hand)?, body.landmark(to, hand)?);
         let share = (y - a.y) / (b.y - a.y);
         let p = a + (b - a) * share;
         (0.0..=1.0).contains(&share).then(|| Point2::new(p.x, p.z))
     };
-    let bones = [
-        ("shoulder_left", "elbow_left"),
-        ("elbow_left", "wrist_left"),
-        ("shoulder_right", "elbow_right"),
-        ("elbow_right", "wrist_right"),
-    ];
-    bones.into_iter().filter_map(crossing).collect()
+    let bones = |hand| [(hand, "shoulder", "elbow"), (hand, "elbow", "wrist")];
+    Hand::BOTH.into_iter().flat_map(bones).filter_map(crossing).collect()
 }
 
 /// The flat length of the shortest closed loop of the slice at height `y` that goes around `middle`

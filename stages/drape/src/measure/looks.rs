@@ -73,7 +73,7 @@ fn fins(garment: &Garment) -> impl Iterator<Item = String> + '_ {
 
 /// Shoulder seams that stand off the body.
 fn shoulders<'a>(garment: &'a Garment, collider: Option<&'a Collider>) -> impl Iterator<Item = String> + 'a {
-    let all = garment.seams.iter().filter(|s| s.name.contains("shoulder"));
+    let all = garment.seams.iter().filter(|s| s.name.contains(EdgeRole::Shoulder.word()));
     all.filter_map(move |seam| {
         let points: Vec<Point3> =
             seam.pairs.iter().map(|pair| garment.positions[pair[0] as usize]).collect();
@@ -115,17 +115,18 @@ fn hem(garment: &Garment) -> Option<String> {
     let middle = mean(lowest, |p| p.x);
     let points = lowest.iter().map(|i| garment.positions[*i as usize]);
     let widest = points.clone().map(|p| (p.x - middle).abs()).fold(0.0, f64::max);
-    let side = |sign: f64| {
+    let side = |hand: Hand| {
         // The outer half of each side.
-        let mine = points.clone().filter(|p| sign * (p.x - middle) > 0.5 * widest).map(|p| p.y);
+        let mine = points.clone().filter(|p| hand.sign() * (p.x - middle) > 0.5 * widest).map(|p| p.y);
         let (n, sum) = mine.fold((0.0, 0.0), |(n, sum), y| (n + 1.0, sum + y));
         (n > 0.0).then(|| sum / n)
     };
     // A rim to one side of the body, as a cuff or a trouser leg, has no two sides of a garment.
     let other = rims.iter().filter(|r| !std::ptr::eq(*r, lowest)).map(|r| mean(r, |p| p.y));
     let is_alone = other.fold(f64::INFINITY, f64::min) > mean(lowest, |p| p.y) + UNEVEN;
-    let off = side(1.0)? - side(-1.0)?;
-    let (low, high) = if off > 0.0 { ("right", "left") } else { ("left", "right") };
+    let off = side(Hand::Left)? - side(Hand::Right)?;
+    let high = Hand::of(off);
+    let low = high.other();
     (is_alone && off.abs() > UNEVEN)
         .then(|| format!("the hem hangs {} lower on the wearer's {low} than on the {high}", cm(off.abs())))
 }

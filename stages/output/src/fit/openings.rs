@@ -2,7 +2,7 @@
 //! takes along them.
 
 use std::collections::{BTreeMap, BTreeSet};
-use toile_core::artifact::{Body, Garment, GarmentPanel, Point2, Point3};
+use toile_core::artifact::{Body, Garment, GarmentPanel, Hand, Point2, Point3};
 
 /// The middle of an armhole, a cuff or a leg is farther than this from the middle of the body,
 /// metres.
@@ -100,9 +100,9 @@ pub(super) fn finished(
         all.extend(longest(garment, hem).map(|l| ("length".to_owned(), l)));
     }
     let trunk: BTreeSet<u32> = around.iter().flat_map(|o| o.vertices.iter().copied()).collect();
-    for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+    for hand in Hand::BOTH {
         let own = |o: &&Opening| {
-            sign * (o.middle().x - axis) > BESIDE && !o.vertices.iter().any(|v| trunk.contains(v))
+            hand.sign() * (o.middle().x - axis) > BESIDE && !o.vertices.iter().any(|v| trunk.contains(v))
         };
         let Some(end) = openings.iter().filter(own).min_by(|a, b| a.height.total_cmp(&b.height)) else {
             continue;
@@ -110,12 +110,12 @@ pub(super) fn finished(
         let is_leg = around.len() == 1;
         let is_own = |p: &&GarmentPanel| end.is_in(p) && !around.iter().any(|o| o.is_in(p));
         if !is_leg && !garment.panels.iter().any(|p| is_own(&p)) {
-            all.insert(format!("armhole_{side}"), end.length);
+            all.insert(hand.name("armhole"), end.length);
             continue;
         }
         let (width, length) = if is_leg { ("leg_opening", "leg") } else { ("cuff", "sleeve") };
-        all.insert(format!("{width}_{side}"), end.length);
-        all.extend(longest(garment, end).map(|l| (format!("{length}_{side}"), l)));
+        all.insert(hand.name(width), end.length);
+        all.extend(longest(garment, end).map(|l| (hand.name(length), l)));
         if is_leg {
             all.insert("opening".to_owned(), around[0].length);
         }

@@ -9,7 +9,7 @@ use super::openings::Opening;
 use nalgebra::Rotation3;
 use std::collections::BTreeMap;
 use toile_body::{slice, trunk};
-use toile_core::artifact::{Body, Garment, GirthFigures, Point2, Point3, Vector3};
+use toile_core::artifact::{Body, Garment, GirthFigures, Hand, Point2, Point3, Vector3};
 use toile_drape::measure::girth;
 
 /// Below the crotch, metres: where the legs are apart.
@@ -28,9 +28,9 @@ pub(super) fn girths(garment: &Garment, body: &Body, openings: &[Opening]) -> BT
     let mut add = |name: &str, figures: Option<GirthFigures>| {
         all.extend(figures.map(|f| (name.to_owned(), f)));
     };
-    for side in ["left", "right"] {
-        add(&format!("biceps_{side}"), biceps(garment, body, side));
-        add(&format!("thigh_{side}"), thigh(garment, body, side));
+    for hand in Hand::BOTH {
+        add(&hand.name("biceps"), biceps(garment, body, hand));
+        add(&hand.name("thigh"), thigh(garment, body, hand));
     }
     add("neck", neck(body, openings));
     all
@@ -41,8 +41,8 @@ fn mark(body: &Body, name: &str) -> Option<Point3> {
 }
 
 /// Around the upper arm, on garment and body turned so that the arm points down through the origin.
-fn biceps(garment: &Garment, body: &Body, side: &str) -> Option<GirthFigures> {
-    let at = |name: &str| mark(body, &format!("{name}_{side}"));
+fn biceps(garment: &Garment, body: &Body, hand: Hand) -> Option<GirthFigures> {
+    let at = |name: &str| body.landmark(name, hand);
     let (shoulder, elbow, armpit) = (at("shoulder")?, at("elbow")?, at("armpit")?);
     let along = (shoulder - elbow).try_normalize(1e-9)?;
     let middle = elbow + along * ((armpit - elbow).dot(&along) / 2.0);
@@ -57,16 +57,15 @@ fn biceps(garment: &Garment, body: &Body, side: &str) -> Option<GirthFigures> {
 }
 
 /// Around one leg alone.
-fn thigh(garment: &Garment, body: &Body, side: &str) -> Option<GirthFigures> {
+fn thigh(garment: &Garment, body: &Body, hand: Hand) -> Option<GirthFigures> {
     let y = mark(body, "crotch")?.y - BELOW_CROTCH;
     let loops = slice(&body.positions, &body.triangles, y);
     let hip = mark(body, "hip_front")?.x;
-    let of = |sign: f64| {
-        let near = loops.iter().filter(|l| sign * (l.centre().x - hip) > 0.0);
+    let of = |hand: Hand| {
+        let near = loops.iter().filter(|l| hand.sign() * (l.centre().x - hip) > 0.0);
         near.max_by(|a, b| a.girth.total_cmp(&b.girth))
     };
-    let sign = if side == "left" { 1.0 } else { -1.0 };
-    let (leg, other) = (of(sign)?, of(-sign)?);
+    let (leg, other) = (of(hand)?, of(hand.other())?);
     let cloth_m = girth::around(garment, y, leg.centre(), &[other.centre()])?;
     Some(GirthFigures { cloth_m, body_m: leg.girth })
 }

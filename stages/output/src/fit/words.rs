@@ -2,7 +2,7 @@
 
 use super::load::ClothLoad;
 use std::collections::BTreeMap;
-use toile_core::artifact::{Body, Garment, Point3};
+use toile_core::artifact::{Body, Garment, Hand, Point3};
 
 /// What is nearer than this to the line of an arm's joints lies on the arm, metres.
 const ARM: f64 = 0.09;
@@ -61,15 +61,15 @@ pub(super) fn tight(
 fn part(body: &Body, p: &Point3) -> String {
     let mark = |name: &str| body.landmarks.get(name).copied();
     let bones = [("shoulder", "elbow", "upper arm"), ("elbow", "wrist", "forearm")];
-    for side in ["left", "right"] {
+    for hand in Hand::BOTH {
         for (from, to, name) in bones {
-            let ends = (mark(&format!("{from}_{side}")), mark(&format!("{to}_{side}")));
+            let ends = (body.landmark(from, hand), body.landmark(to, hand));
             let (Some(a), Some(b)) = ends else { continue };
-            let (along, beyond) = (b - a, mark(&format!("armpit_{side}")).map_or(0.0, |q| q.x.abs()));
+            let (along, beyond) = (b - a, body.landmark("armpit", hand).map_or(0.0, |q| q.x.abs()));
             let share = (p - a).dot(&along) / along.norm_squared().max(1e-12);
             let off = (p - (a + along * share.clamp(0.0, 1.0))).norm();
             if off < ARM && share < 1.05 && p.x.abs() > beyond {
-                return format!("{side} {name}");
+                return format!("{hand} {name}");
             }
         }
     }
@@ -79,15 +79,15 @@ fn part(body: &Body, p: &Point3) -> String {
     let near = near.min_by(|a, b| (a.1.y - p.y).abs().total_cmp(&(b.1.y - p.y).abs()));
     let Some((level, front, back)) = near else { return "body".to_owned() };
     let (middle, half) = ((front.z + back.z) / 2.0, ((front.z - back.z) / 2.0).max(1e-6));
+    let hand = Hand::of(p.x - front.x);
     if mark("crotch").is_some_and(|c| p.y < c.y) {
-        return format!("{} thigh", if p.x > front.x { "left" } else { "right" });
+        return format!("{hand} thigh");
     }
     let level = level.replace("neck_base", "neck");
     match (p.z - middle) / half {
         z if z > 0.5 => format!("front of the {level}"),
         z if z < -0.5 => format!("back of the {level}"),
-        _ if p.x > front.x => format!("left side of the {level}"),
-        _ => format!("right side of the {level}"),
+        _ => format!("{hand} side of the {level}"),
     }
 }
 

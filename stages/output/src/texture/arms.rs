@@ -17,10 +17,10 @@ const SHARE: f64 = 0.22;
 /// Errors: a landmark of an arm is missing; an arm is not found beyond its cut.
 pub(super) fn without_arms(body: &Body) -> Result<Body, StageError> {
     let mut rest = body.clone();
-    for side in ["left", "right"] {
+    for hand in Hand::BOTH {
         let mark = |name: &str| {
-            let name = format!("{name}_{side}");
-            body.landmarks.get(&name).copied().ok_or_else(|| no_arm(&format!("has no landmark `{name}`")))
+            let missing = || no_arm(&format!("has no landmark `{}`", hand.name(name)));
+            body.landmark(name, hand).ok_or_else(missing)
         };
         let root = nalgebra::center(&mark("shoulder")?, &mark("armpit")?);
         let along = (mark("elbow")? - root) * SHARE;

@@ -35,7 +35,7 @@ use toile_core::prelude::*;
 type PiecePlaces = BTreeMap<String, Vec<Point3>>;
 
 /// Places of every piece, and the sleeves among those that had none, each with the hand of its arm.
-type Stood = (PiecePlaces, Option<Vec<(String, f64)>>);
+type Stood = (PiecePlaces, Option<Vec<(String, Hand)>>);
 
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
 const BELOW: f64 = 0.1;
@@ -169,7 +169,10 @@ impl Arrange {
         let decided = region::decide(pattern)?;
         let (places, told) = stand::stand(pattern, &decided, offsets, body, self.clearance.metres())?;
         told.into_iter().for_each(|what| cx.note(what));
-        let arm = |(p, d): (&Piece, &Decided)| (d.region == Region::Arm).then(|| (p.name.clone(), d.hand));
+        let arm = |(p, d): (&Piece, &Decided)| match d.region {
+            Region::Arm(hand) => Some((p.name.clone(), hand)),
+            _ => None,
+        };
         Ok((places, Some(pattern.pieces.iter().zip(&decided).filter_map(arm).collect())))
     }
 

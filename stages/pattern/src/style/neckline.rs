@@ -10,10 +10,10 @@
 //! milliseconds. Limits: a curve that is symmetric about the middle of the neck points; a garment
 //! photographed closed and without any seam at its neck gets the usual depth, with a warning.
 
+use super::block::Layer;
 use super::closed_front::ClosedFront;
 use super::drawn::redrawn;
 use super::replaced::replaced;
-use super::sewing::is_back;
 use rayon::prelude::*;
 use toile_core::prelude::*;
 
@@ -119,17 +119,19 @@ impl Neckline {
         if let Some((name, _)) = photos.iter().find(|(_, p)| p.pixels.as_raw().is_empty()) {
             return Err(StageError::invalid(format!("the photo of \"{name}\" has no pixels")));
         }
-        for (name, outline) in outlines.iter().filter(|(name, _)| !is_back(name)) {
-            let chord = outline.edge("neck").and_then(|neck| Chord::of(outline, neck));
+        for (name, outline) in outlines.iter().filter(|(name, _)| Layer::of_name(name) == Layer::Front) {
+            let chord = neck(outline).and_then(|neck| Chord::of(outline, neck));
             self.depth.zip(chord).map_or(Ok(()), |(depth, chord)| chord.holds(depth, name, outline))?;
         }
-        let neck_of = |o: &Outline| Some(polyline_length(&o.edge_points(o.edge("neck")?)));
-        let behind = outlines.iter().filter(|(name, _)| is_back(name)).find_map(|(_, o)| neck_of(o));
+        let around = |o: &Outline| Some(polyline_length(&o.edge_points(neck(o)?)));
+        let mut backs = outlines.iter().filter(|(name, _)| Layer::of_name(name) == Layer::Back);
+        let behind = backs.find_map(|(_, o)| around(o));
         let least =
             body.and_then(throat).zip(behind).map_or(0.0, |(throat, behind)| TIGHTEST * throat - behind);
         let closed = ClosedFront::among(outlines);
         let both = closed.as_ref().and_then(|front| {
-            front.halved(&self.cut("front", &front.whole, photos.get("front"), least, cx)?)
+            let name = Layer::Front.word();
+            front.halved(&self.cut(name, &front.whole, photos.get(name), least, cx)?)
         });
         let is_half = |name: &str| both.is_some() && closed.as_ref().is_some_and(|f| f.is_half(name));
         let others = outlines.iter().filter(|(name, _)| !is_half(name)).map(|(name, o)| {
@@ -149,7 +151,7 @@ impl Neckline {
         least: f64,
         cx: &Context,
     ) -> Option<Outline> {
-        let neck = outline.edge("neck").filter(|_| !is_back(name))?;
+        let neck = neck(outline).filter(|_| Layer::of_name(name) == Layer::Front)?;
         let chord = Chord::of(outline, neck)?;
         let collar = chord.profile(&outline.edge_points(neck));
         let lowest = collar.iter().copied().fold(0.0, f64::max);
@@ -197,11 +199,17 @@ impl Neckline {
     }
 }
 
+/// The neck of a front or back from side to side.
+fn neck(outline: &Outline) -> Option<&Edge> {
+    outline.edge_of(EdgeRole::Neck, None)
+}
+
 /// Around the neck of a body, where a neckline lies: an ellipse through its sides, its front and
 /// its back, metres.
 fn throat(body: &Body) -> Option<f64> {
     let at = |name: &str| body.landmarks.get(name).copied();
-    let (left, right) = (at("neck_left")?, at("neck_right")?);
+    let [left, right] = Hand::BOTH.map(|hand| body.landmark("neck", hand));
+    let (left, right) = (left?, right?);
     let (front, back) = (at("neck_base_front")?, at("neck_base_back")?);
     let (a, b) = (0.5 * (left - right).norm(), 0.5 * (front - back).norm());
     // Ramanujan 1914.
@@ -301,7 +309,7 @@ impl Chord {
     /// How deep a neckline may be at most: it ends above the armpits, where the outline has
     /// armholes.
     fn deepest(&self, outline: &Outline) -> f64 {
-        let holes = outline.edges.iter().filter(|e| e.name.starts_with("armhole"));
+        let holes = Hand::BOTH.into_iter().filter_map(|hand| outline.edge_of(EdgeRole::Armhole, Some(hand)));
         let points = &outline.outer.points;
         let depth = |i: usize| (points[i] - self.middle).dot(&self.down);
         let armpits = holes.map(|e| depth(e.start).max(depth(e.end)));

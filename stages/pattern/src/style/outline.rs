@@ -9,10 +9,9 @@
 mod threads;
 
 use super::block::template::fit::Fit;
-use super::block::template::flat::Layer;
 use super::block::template::form::{Form, LONG, TEE, VEST};
-use super::block::{Block, BlockStyle, Fitted, LAY, Stand, check_wearable, no_front};
-use super::sewing::{is_back, pairs, sew};
+use super::block::{Block, BlockStyle, Fitted, LAY, Layer, Stand, check_wearable, no_front};
+use super::sewing::{pairs, sew};
 use nalgebra::Rotation2;
 use toile_core::artifact::Outline as Shape;
 use toile_core::param::ron_options;
@@ -58,26 +57,27 @@ const TEMPLATES: [Template; 3] = [
 impl Template {
     /// The edges between hem and neck, from below, each with the number of the form's edge that it
     /// begins with. The top of a sleeve goes on as the shoulder.
-    fn half(&self) -> impl DoubleEndedIterator<Item = (&'static str, usize)> {
+    fn half(&self) -> impl DoubleEndedIterator<Item = (EdgeRole, usize)> {
         let edges = self.form.edges;
-        let named = |k: usize| match (edges[k].name, edges[k - 1].name) {
-            ("shoulder", "top") => None,
-            ("top", _) => Some(("shoulder", k)),
-            (name, _) => Some((name, k)),
+        let named = |k: usize| match (edges[k].role, edges[k - 1].role) {
+            (EdgeRole::Shoulder, EdgeRole::Top) => None,
+            (EdgeRole::Top, _) => Some((EdgeRole::Shoulder, k)),
+            (role, _) => Some((role, k)),
         };
         (1..edges.len() - 1).filter_map(named)
     }
 
     /// The names of all edges of a panel.
     fn edges(&self) -> Vec<String> {
-        let both = self.half().flat_map(|(name, _)| ["left", "right"].map(|side| format!("{name}_{side}")));
-        both.chain(["neck".to_owned(), "hem".to_owned()]).collect()
+        let both = self.half().flat_map(|(role, _)| Hand::BOTH.map(|hand| role.name(Some(hand))));
+        both.chain([EdgeRole::Neck, EdgeRole::Hem].map(|role| role.name(None))).collect()
     }
 
     /// The edges at which front and back are sewn, from the shoulders down.
     fn sewn(&self) -> Vec<String> {
-        let sewn = self.half().rev().filter(|(name, _)| ["shoulder", "underarm", "side"].contains(name));
-        sewn.flat_map(|(name, _)| ["left", "right"].map(|side| format!("{name}_{side}"))).collect()
+        let is_sewn = |role| matches!(role, EdgeRole::Shoulder | EdgeRole::Underarm | EdgeRole::Side);
+        let sewn = self.half().rev().filter(|(role, _)| is_sewn(*role));
+        sewn.flat_map(|(role, _)| Hand::BOTH.map(|hand| role.name(Some(hand)))).collect()
     }
 }
 
@@ -210,25 +210,26 @@ fn laid<'a>(
 
 /// Whether what was taken for an armhole ends a sleeve.
 fn has_sleeves(template: &Template, lying: &Fit) -> bool {
-    let armhole = template.form.edges.iter().position(|e| e.name == "armhole");
+    let armhole = template.form.at(EdgeRole::Armhole);
     armhole.is_some_and(|k| lying.sides.iter().any(|s| s[k].b.x > BEYOND * s[k].a.x))
 }
 
 /// The outline with its edges; `None` where their corners do not follow each other.
 fn named(template: &Template, panel: &str, outline: &Shape, fitted: &Fitted) -> Option<Shape> {
-    let [plus, minus] = if is_back(panel) { ["right", "left"] } else { ["left", "right"] };
+    let layer = Layer::of_name(panel);
+    let [plus, minus] = [0, 1].map(|k| layer.hand(k));
     let corner = |k: usize, side: usize| corner(outline, fitted, k, side);
     let neck = template.form.edges.len() - 1;
-    let half: Vec<(&str, usize)> = template.half().collect();
+    let half: Vec<(EdgeRole, usize)> = template.half().collect();
     // Upwards an edge starts at its lower corner, downwards at its upper one.
     let mut starts: Vec<(String, usize)> =
-        half.iter().map(|(name, k)| (format!("{name}_{plus}"), corner(*k, 0))).collect();
-    starts.push(("neck".to_owned(), corner(neck, 0)));
+        half.iter().map(|(role, k)| (role.name(Some(plus)), corner(*k, 0))).collect();
+    starts.push((EdgeRole::Neck.name(None), corner(neck, 0)));
     let upper = half.iter().skip(1).map(|(_, k)| *k).chain([neck]);
     let down: Vec<_> =
-        half.iter().zip(upper).map(|((name, _), k)| (format!("{name}_{minus}"), corner(k, 1))).collect();
+        half.iter().zip(upper).map(|((role, _), k)| (role.name(Some(minus)), corner(k, 1))).collect();
     starts.extend(down.into_iter().rev());
-    starts.push(("hem".to_owned(), corner(half[0].1, 1)));
+    starts.push((EdgeRole::Hem.name(None), corner(half[0].1, 1)));
     let (n, first) = (outline.outer.points.len(), starts[0].1);
     let way = |i: usize| (i + n - first) % n;
     if !starts.windows(2).all(|w| way(w[0].1) < way(w[1].1)) {
@@ -282,9 +283,8 @@ fn pose(laid: &Laid<'_>, body: &Body) -> Result<Pose, StageError> {
     let Fitted { upright, lying, .. } = &laid.fitted;
     let Fit { sides, turn, shift, .. } = lying;
     let top = 0.5 * sides.iter().filter_map(|s| s.last()).map(|neck| neck.a.y).sum::<f64>();
-    let stand = Stand::of(body, "neck_left", top)?;
+    let stand = Stand::of(body, &Hand::Left.name("neck"), top)?;
     let turn = upright.tilt.to_radians() + turn;
     let origin = Rotation2::new(-turn) * -upright.centre - Vector2::new(*shift, 0.0);
-    let layer = if is_back(laid.panel) { Layer::Back } else { Layer::Front };
-    Ok(stand.pose(origin, -turn, layer))
+    Ok(stand.pose(origin, -turn, Layer::of_name(laid.panel)))
 }

@@ -5,6 +5,7 @@
 //! other: its threads must not be longer than those of the opposite pairing. Cost: linear in the
 //! edges.
 
+use super::block::Layer;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,20 +22,16 @@ const REVERSED: f64 = 1.25;
 /// Points on an edge at which its threads are measured.
 const THREADS: usize = 9;
 
-/// True for panels that lie behind the body.
-pub(super) fn is_back(panel: &str) -> bool {
-    panel.to_lowercase().contains("back")
-}
-
 /// The style's seams between `front` and `back`, for edges that both have.
 pub(super) fn pairs(outlines: &Set<Outline>, names: &[&str], cx: &Context) -> Vec<Seam> {
-    for (panel, _) in outlines.iter().filter(|(p, _)| *p != "front" && *p != "back") {
-        cx.warn(format!("the style sews \"front\" and \"back\"; the panel \"{panel}\" stays unsewn"));
+    let [front, back] = Layer::BOTH.map(Layer::word);
+    for (panel, _) in outlines.iter().filter(|(p, _)| *p != front && *p != back) {
+        cx.warn(format!("the style sews \"{front}\" and \"{back}\"; the panel \"{panel}\" stays unsewn"));
     }
-    match (outlines.get("front"), outlines.get("back")) {
-        (Some(_), Some(_)) => names.iter().map(|n| between("front", "back", n)).collect(),
+    match (outlines.get(front), outlines.get(back)) {
+        (Some(_), Some(_)) => names.iter().map(|n| between(front, back, n)).collect(),
         (one, _) => {
-            let lone = if one.is_some() { "front" } else { "back" };
+            let lone = if one.is_some() { front } else { back };
             cx.warn(format!(
                 "the panel \"{lone}\" has no partner and stays unsewn; give a photo of the other side, or \
                  `MirrorOf(\"{lone}\")` in its place"
@@ -178,9 +175,9 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
 fn check_direction(outlines: &BTreeMap<String, Outline>, seam: &Seam) -> Result<(), StageError> {
     let [a, b] = [&seam.a, &seam.b].map(|side| {
         // As it is seen from before the wearer.
-        let hand = if is_back(&side.panel) { -1.0 } else { 1.0 };
+        let sign = if Layer::of_name(&side.panel) == Layer::Back { -1.0 } else { 1.0 };
         let points = find(outlines, side)?;
-        Ok::<_, StageError>(evenly(&points).map(|q| Point2::new(hand * q.x, q.y)))
+        Ok::<_, StageError>(evenly(&points).map(|q| Point2::new(sign * q.x, q.y)))
     });
     let (a, b): ([Point2; THREADS], [Point2; THREADS]) = (a?, b?);
     // Only the run of the edges counts, not how far the panels lie apart.

@@ -2,7 +2,7 @@
 
 use super::MessageContext;
 use nalgebra::Vector3;
-use toile_core::artifact::Point3;
+use toile_core::artifact::{Hand, Point3};
 
 /// A place nearer than this to a landmark is described by that landmark, metres.
 const AT: f64 = 0.12;
@@ -52,9 +52,9 @@ impl MessageContext<'_> {
 /// waist.
 fn landmark(name: &str) -> String {
     let words = |name: &str| name.replace('_', " ");
-    match name.rsplit_once('_') {
-        Some((of, side @ ("left" | "right"))) => format!("the {side} {}", words(of)),
-        Some((of, side @ ("front" | "back"))) => format!("the {side} of the {}", words(of)),
+    match (Hand::split(name), name.rsplit_once('_')) {
+        ((of, Some(hand)), _) => format!("the {hand} {}", words(of)),
+        (_, Some((of, side @ ("front" | "back")))) => format!("the {side} of the {}", words(of)),
         _ => format!("the {}", words(name)),
     }
 }

@@ -72,7 +72,7 @@ fn threads(boards: &[Board<'_>], seams: &[GarmentSeam]) -> Vec<[Point3; 2]> {
 
 /// How far the garment must be raised for its shoulder seams to be free, or most of them, metres.
 pub(super) fn raise(boards: &[Board<'_>], seams: &[GarmentSeam], body: &Body) -> f64 {
-    let [shoulder, armpit] = ["shoulder_left", "armpit_left"].map(|name| body.landmarks.get(name));
+    let [shoulder, armpit] = ["shoulder", "armpit"].map(|name| body.landmark(name, Hand::Left));
     let (Some(shoulder), Some(armpit)) = (shoulder, armpit) else { return 0.0 };
     let (threads, depths) = (threads(boards, seams), DepthMap::new(body));
     let blocked = |by: f64| {

@@ -51,7 +51,7 @@ pub(super) fn swing(
             continue;
         }
         let Some(points) = places.get_mut(&piece.name) else { continue };
-        let hand = points.iter().map(|p| p.x).sum::<f64>().signum();
+        let hand = Hand::of(points.iter().map(|p| p.x).sum());
         let rows = rows(points, crotch);
         let legs: BTreeMap<i64, f64> =
             rows.keys().filter_map(|k| Some((*k, leg_at(body, *k as f64 * STEP, hand)?))).collect();
@@ -72,7 +72,7 @@ pub(super) fn swing(
             p.x += by;
         }
         if moved.abs() > LEAST {
-            let way = if moved * hand > 0.0 { "outwards" } else { "inwards" };
+            let way = if moved * hand.sign() > 0.0 { "outwards" } else { "inwards" };
             told.push(format!(
                 "{} is swung {way} by {:.0} mm, to where the body's leg is",
                 piece.name,
@@ -138,10 +138,10 @@ fn rows(points: &[Point3], crotch: f64) -> BTreeMap<i64, [f64; 2]> {
 }
 
 /// The middle of the body's leg on one side at a height.
-fn leg_at(body: &Body, y: f64, hand: f64) -> Option<f64> {
+fn leg_at(body: &Body, y: f64, hand: Hand) -> Option<f64> {
     let loops = slice(&body.positions, &body.triangles, y);
     // Hands may hang lower than the fork, farther out.
-    let own = loops.iter().filter(|l| l.centre().x * hand > 0.01);
+    let own = loops.iter().filter(|l| l.centre().x * hand.sign() > 0.01);
     let leg = own.min_by(|a, b| a.centre().x.abs().total_cmp(&b.centre().x.abs()))?;
     Some(leg.centre().x)
 }
@@ -192,7 +192,7 @@ mod tests {
         assert!(told[0].starts_with("left_leg_front is swung inwards by "), "{told:?}");
         for k in [2, 6, 12] {
             let row = &places["left_leg_front"][5 * k..5 * k + 5];
-            let leg = leg_at(&body, row[0].y, 1.0).unwrap();
+            let leg = leg_at(&body, row[0].y, Hand::Left).unwrap();
             assert!((row[2].x - leg).abs() < 0.01, "{} {leg}", row[2].x);
             assert!((row[4].x - row[0].x - 0.2).abs() < 1e-9, "as wide as before");
         }

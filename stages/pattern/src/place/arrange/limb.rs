@@ -12,8 +12,7 @@ const ROOT: f64 = 0.065;
 /// An arm: its axis from the shoulder to the wrist, and which way is up and forward around it.
 #[derive(Debug, Clone)]
 pub(super) struct Limb {
-    /// `left arm` or `right arm`.
-    pub(super) name: &'static str,
+    pub(super) hand: Hand,
     /// The middle of the arm's root.
     pub(super) root: Point3,
     /// Unit direction of the axis.
@@ -29,12 +28,11 @@ pub(super) struct Limb {
 impl Limb {
     /// The two arms of a body; those whose landmarks it has.
     pub(super) fn arms(body: &Body) -> Vec<Limb> {
-        let sides = [("left arm", "left"), ("right arm", "right")];
-        sides.into_iter().filter_map(|(name, side)| Limb::arm(body, name, side)).collect()
+        Hand::BOTH.into_iter().filter_map(|hand| Limb::arm(body, hand)).collect()
     }
 
-    fn arm(body: &Body, name: &'static str, side: &str) -> Option<Limb> {
-        let at = |part: &str| body.landmarks.get(&format!("{part}_{side}")).copied();
+    fn arm(body: &Body, hand: Hand) -> Option<Limb> {
+        let at = |part: &str| body.landmark(part, hand);
         let root = nalgebra::center(&at("shoulder")?, &at("armpit")?);
         let axis = (at("wrist")? - root).try_normalize(1e-6)?;
         let forward = Vector3::z();
@@ -53,7 +51,7 @@ impl Limb {
             (along > 0.0 && off < REACH).then_some((along, off))
         };
         let skin = body.positions.iter().filter_map(near).collect();
-        Some(Limb { name, root, axis, front, up, skin })
+        Some(Limb { hand, root, axis, front, up, skin })
     }
 
     /// Whether a point is on the arm's side of the body.

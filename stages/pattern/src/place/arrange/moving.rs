@@ -16,7 +16,7 @@ pub(super) struct Moving<'a> {
     pub(super) seams: &'a [GarmentSeam],
     pub(super) offsets: &'a Offsets<'a>,
     /// The sleeves of a pattern without places, each with the hand of its arm.
-    pub(super) sleeves: Option<&'a [(String, f64)]>,
+    pub(super) sleeves: Option<&'a [(String, Hand)]>,
     /// Least distance of a bent piece from the arm, metres.
     pub(super) clearance: f64,
 }
@@ -49,7 +49,7 @@ impl Moving<'_> {
         let mut told = Vec::new();
         for limb in Limb::arms(self.body) {
             let mine = match self.sleeves {
-                Some(all) => all.iter().filter(|s| s.1 * limb.root.x > 0.0).map(|s| s.0.clone()).collect(),
+                Some(all) => all.iter().filter(|s| s.1 == limb.hand).map(|s| s.0.clone()).collect(),
                 None => tubes::around(&limb, self.pattern, &places),
             };
             let sewn = tubes::bend(&limb, &mine, &mut places, self.seams, self.offsets, self.clearance);

@@ -37,11 +37,11 @@ pub(super) enum Region {
     /// From the waist down, around both legs.
     Skirt,
     /// One leg.
-    Leg,
+    Leg(Hand),
     /// A band around the waist.
     Waist,
     /// An arm, in one piece.
-    Arm,
+    Arm(Hand),
 }
 
 /// The side of the body that a piece covers.
@@ -60,8 +60,8 @@ pub(super) enum Side {
 pub(super) struct Decided {
     pub(super) region: Region,
     pub(super) side: Side,
-    /// 1 on the wearer's left, -1 on the right, 0 where it covers both.
-    pub(super) hand: f64,
+    /// That of a half front or back.
+    pub(super) hand: Option<Hand>,
     /// What speaks for it.
     pub(super) why: String,
 }
@@ -178,14 +178,14 @@ pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
         let itself = joints.iter().any(|j| j.pieces == [i, i]);
         if let Some(word) = is(&BAND) {
             let why = format!("the word \"{word}\" in its name");
-            return Ok(Decided { region: Region::Waist, side: Side::Around, hand: 0.0, why });
+            return Ok(Decided { region: Region::Waist, side: Side::Around, hand: None, why });
         }
         if let Some(word) = is(&SLEEVE) {
             let hand = sleeve_hand(i, pieces, &joints, &words).ok_or_else(|| {
                 unclear(format!("nothing tells whether the sleeve \"{name}\" is the left or the right one"))
             })?;
             let why = format!("the word \"{word}\" in its name, and the armhole that it is sewn into");
-            return Ok(Decided { region: Region::Arm, side: Side::Around, hand, why });
+            return Ok(Decided { region: Region::Arm(hand), side: Side::Around, hand: None, why });
         }
         match face(&words[i]) {
             None if itself && joints.iter().any(&twin) => {
@@ -193,17 +193,17 @@ pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
                     unclear(format!("nothing tells the front of the leg \"{name}\" from its back"))
                 })?;
                 let why = "it is sewn to itself and to its mirror image; its rise is longer behind".to_owned();
-                Ok(Decided { region: Region::Leg, side: Side::Around, hand, why })
+                Ok(Decided { region: Region::Leg(hand), side: Side::Around, hand: None, why })
             }
             None if is_band(&pieces[i]) && sews_tops(i, pieces, &joints) => {
                 let why = "a narrow piece along the upper ends of others".to_owned();
-                Ok(Decided { region: Region::Waist, side: Side::Around, hand: 0.0, why })
+                Ok(Decided { region: Region::Waist, side: Side::Around, hand: None, why })
             }
             None => Err(unclear(format!("nothing says where the piece \"{name}\" stands"))),
             Some((side, word)) => {
                 let shoulder = joints.iter().any(|j| j.pieces.contains(&i) && is_shoulder(j, pieces));
                 let own_side = |j: &&Joint| twin(j);
-                let hand = joints.iter().find(own_side).map_or(0.0, |j| half_hand(i, j, pieces, side));
+                let hand = joints.iter().find(own_side).map(|j| half_hand(i, j, pieces, side));
                 let (region, because) = match shoulder {
                     true => (Region::Trunk, "it is sewn at its upper end beside the middle, as shoulders are"),
                     false => (Region::Skirt, "none of its seams is a shoulder"),
@@ -226,7 +226,7 @@ fn face(words: &BTreeSet<String>) -> Option<(Side, String)> {
 }
 
 /// The arm of a sleeve: the side of the body of the armholes that it is sewn to, by length.
-fn sleeve_hand(i: usize, pieces: &[Piece], joints: &[Joint], words: &[BTreeSet<String>]) -> Option<f64> {
+fn sleeve_hand(i: usize, pieces: &[Piece], joints: &[Joint], words: &[BTreeSet<String>]) -> Option<Hand> {
     let (mut sum, mut all) = (0.0, 0.0);
     for j in joints {
         for k in (0..2).filter(|k| j.pieces[*k] == i && j.pieces[1 - *k] != i) {
@@ -236,13 +236,13 @@ fn sleeve_hand(i: usize, pieces: &[Piece], joints: &[Joint], words: &[BTreeSet<S
             let twin = joints.iter().find(|t| t.pieces.contains(&other) && twins(pieces, t.pieces));
             let (lo, hi) = bounds(&pieces[other]);
             // Seen from outside, the wearer's left is at the right before and at the left behind.
-            let right = if at.x > (lo.x + hi.x) / 2.0 { 1.0 } else { -1.0 };
-            let whole = if side == Side::Front { right } else { -right };
+            let before = Hand::of(at.x - (lo.x + hi.x) / 2.0);
+            let whole = if side == Side::Front { before } else { before.other() };
             all += length;
-            sum += length * twin.map_or(whole, |t| half_hand(other, t, pieces, side));
+            sum += length * twin.map_or(whole, |t| half_hand(other, t, pieces, side)).sign();
         }
     }
-    (f64::abs(sum) > 0.5 * all).then(|| sum.signum())
+    (f64::abs(sum) > 0.5 * all).then(|| Hand::of(sum))
 }
 
 /// The words of each name, small, without those that all pieces have.
@@ -325,17 +325,17 @@ fn is_shoulder(j: &Joint, pieces: &[Piece]) -> bool {
 }
 
 /// The hand of a half front or back, whose edge in the middle is sewn to its mirror image.
-fn half_hand(i: usize, j: &Joint, pieces: &[Piece], side: Side) -> f64 {
+fn half_hand(i: usize, j: &Joint, pieces: &[Piece], side: Side) -> Hand {
     let k = usize::from(j.pieces[0] != i);
     let (lo, hi) = bounds(&pieces[i]);
     let at_left = middle(&pieces[i], &j.edges[k]).0.x < (lo.x + hi.x) / 2.0;
     // Seen from outside, the wearer's left is at the right before and at the left behind.
-    if at_left == (side == Side::Front) { 1.0 } else { -1.0 }
+    if at_left == (side == Side::Front) { Hand::Left } else { Hand::Right }
 }
 
 /// The hand of a leg in one piece: the rise is longer behind, and behind is at the right of a left
 /// leg seen from outside.
-fn leg_hand(i: usize, pieces: &[Piece], joints: &[Joint]) -> Option<f64> {
+fn leg_hand(i: usize, pieces: &[Piece], joints: &[Joint]) -> Option<Hand> {
     let mut rises: Vec<(f64, f64)> = Vec::new();
     for j in joints.iter().filter(|j| j.pieces[0] != j.pieces[1] && twins(pieces, j.pieces)) {
         for k in 0..2 {
@@ -348,5 +348,5 @@ fn leg_hand(i: usize, pieces: &[Piece], joints: &[Joint]) -> Option<f64> {
     let [a, b] = rises[..] else { return None };
     let (behind, before) = if a.0 > b.0 { (a, b) } else { (b, a) };
     let clear = behind.0 > 1.02 * before.0 && behind.1 != before.1;
-    clear.then(|| if behind.1 > before.1 { 1.0 } else { -1.0 })
+    clear.then(|| Hand::of(behind.1 - before.1))
 }

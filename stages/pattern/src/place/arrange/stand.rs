@@ -58,7 +58,8 @@ impl Figure {
                 .hint("take a Mannequin, or give the pattern places around the body")
             })
         };
-        let (neck, shoulder) = (at("neck_left")?, at("shoulder_left")?);
+        let [neck, shoulder] = ["neck", "shoulder"].map(|name| at(&Hand::Left.name(name)));
+        let (neck, shoulder) = (neck?, shoulder?);
         let crotch = at("crotch")?.y;
         let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
         let trunk = || {
@@ -126,8 +127,8 @@ pub(super) fn stand(
         let (placed, words) = match d.region {
             Region::Trunk => flat(piece, d, trunk_level(i, pattern, &joints, &figure, d), &figure),
             Region::Skirt => flat(piece, d, figure.waist - top_of(i, pattern, &joints), &figure),
-            Region::Leg => leg(i, pattern, d, &joints, &figure, body, clearance),
-            Region::Arm => sleeve(i, pattern, d, &joints, body)?,
+            Region::Leg(hand) => leg(i, pattern, hand, &joints, &figure, body, clearance),
+            Region::Arm(hand) => sleeve(i, pattern, hand, &joints, body)?,
             Region::Waist => band(i, pattern, &joints, &hung, &figure, body, clearance),
         };
         places.insert(piece.name.clone(), panel.positions.iter().map(|p| placed.at(*p)).collect());
@@ -188,10 +189,9 @@ impl Hung {
 /// Where the middle of the body lies in a piece's own x.
 fn middle_line(d: &Decided, piece: &Piece) -> f64 {
     let (lo, hi) = bounds(piece);
-    let behind = if d.side == Side::Back { -1.0 } else { 1.0 };
-    match d.hand * behind {
-        0.0 => (lo.x + hi.x) / 2.0,
-        h if h > 0.0 => lo.x,
+    match (d.hand, d.side) {
+        (None, _) => (lo.x + hi.x) / 2.0,
+        (Some(Hand::Left), Side::Front | Side::Around) | (Some(Hand::Right), Side::Back) => lo.x,
         _ => hi.x,
     }
 }
@@ -243,7 +243,7 @@ fn top_of(i: usize, pattern: &Pattern, joints: &[Joint]) -> f64 {
 fn leg(
     i: usize,
     pattern: &Pattern,
-    d: &Decided,
+    hand: Hand,
     joints: &[Joint],
     f: &Figure,
     body: &Body,
@@ -255,17 +255,16 @@ fn leg(
     let fork = piece.outer.corners.iter().filter(|c| c.x - lo.x < 1e-3 || hi.x - c.x < 1e-3);
     let fork = fork.map(|c| c.y).fold(f64::NEG_INFINITY, f64::max);
     let rise = (f.waist - top_of(i, pattern, joints)).min(f.crotch - fork);
-    let axis = [d.hand * f.leg[0], f.leg[1]];
+    let axis = [hand.sign() * f.leg[0], f.leg[1]];
     let (low, high) = (lo.y + rise, hi.y + rise);
-    let radii = leg_radii(body, f, axis, d.hand, (low, high), clearance);
+    let radii = leg_radii(body, f, axis, hand, (low, high), clearance);
     let words = format!(
-        "goes around the {} leg, radius {:.0} mm at the fork, its upper edge {:+.0} mm from the waist",
-        if d.hand > 0.0 { "left" } else { "right" },
+        "goes around the {hand} leg, radius {:.0} mm at the fork, its upper edge {:+.0} mm from the waist",
         radii[((fork + rise - low) / STEP).clamp(0.0, (radii.len() - 1) as f64) as usize] * 1e3,
         (top_of(i, pattern, joints) + rise - f.waist) * 1e3
     );
     // The middle of its width lies outside of the leg.
-    let (middle, facing) = ((lo.x + hi.x) / 2.0, d.hand * TAU / 4.0);
+    let (middle, facing) = ((lo.x + hi.x) / 2.0, hand.sign() * TAU / 4.0);
     let round = Round { across: Vector2::x(), middle, facing, axis, rise, radii, from: low, step: STEP };
     (Hung::Round(round), words)
 }
@@ -275,12 +274,12 @@ fn leg(
 fn sleeve(
     i: usize,
     pattern: &Pattern,
-    d: &Decided,
+    hand: Hand,
     joints: &[Joint],
     body: &Body,
 ) -> Result<(Hung, String), StageError> {
     let piece = &pattern.pieces[i];
-    let limb = Limb::arms(body).into_iter().find(|l| l.root.x * d.hand > 0.0).ok_or_else(|| {
+    let limb = Limb::arms(body).into_iter().find(|l| l.hand == hand).ok_or_else(|| {
         StageError::invalid(format!("the body has no arm for the sleeve \"{}\"", piece.name))
             .hint("take a Mannequin, or give the pattern places around the body")
     })?;
@@ -288,9 +287,9 @@ fn sleeve(
     let of_others = joints.iter().filter(|j| j.pieces[0] != j.pieces[1]);
     let caps = of_others.flat_map(|j| (0..2).filter(|k| j.pieces[*k] == i).map(|k| &j.edges[k]));
     let cap = caps.map(|edges| middle(piece, edges).0.y).fold(f64::NEG_INFINITY, f64::max);
-    let (across, along) = (limb.up * d.hand, -limb.axis);
+    let (across, along) = (limb.up * hand.sign(), -limb.axis);
     let origin = limb.root + limb.front * BEFORE - across * ((lo.x + hi.x) / 2.0) - along * cap;
-    Ok((Hung::Flat(Pose { origin, across, along }), format!("goes around the {}", limb.name)))
+    Ok((Hung::Flat(Pose { origin, across, along }), format!("goes around the {hand} arm")))
 }
 
 /// Radii around a leg, a step of height each. Above the fork only the outside of the hip counts:
@@ -300,14 +299,14 @@ fn leg_radii(
     body: &Body,
     f: &Figure,
     axis: [f64; 2],
-    hand: f64,
+    hand: Hand,
     (low, high): (f64, f64),
     clearance: f64,
 ) -> Vec<f64> {
     let n = ((high - low) / STEP).ceil().max(1.0) as usize + 1;
     let mut radii = vec![0.0_f64; n];
     for p in &body.positions {
-        let out = p.x * hand;
+        let out = p.x * hand.sign();
         let inside = if p.y > f.crotch { axis[0].abs() } else { 0.0 };
         // Feet stick out forward, hands are no part of a leg.
         if out < inside || out > f.shoulder[0] || p.y < FEET * f.top || p.y > f.waist + STEP {

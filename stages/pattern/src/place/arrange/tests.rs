@@ -83,15 +83,15 @@ fn bending_keeps_the_trunk_where_it_is_and_every_edge_about_as_long() {
 fn a_sleeve_goes_round_its_own_arm() {
     let bent = arranged(&made("shirt"), true).unwrap();
     let body = mannequin();
-    for side in ["left", "right"] {
-        let wrist = body.landmarks[&format!("wrist_{side}")];
+    for hand in Hand::BOTH {
+        let wrist = body.landmark("wrist", hand).unwrap();
         let cuff: Vec<Point3> = ["front", "back"]
             .iter()
-            .flat_map(|h| points(&bent, &format!("{side}_cuff_{h}")))
+            .flat_map(|h| points(&bent, &format!("{hand}_cuff_{h}")))
             .copied()
             .collect();
         let middle = cuff.iter().map(|p| p.coords).sum::<Vector3>() / cuff.len() as f64;
-        assert!((middle - wrist.coords).norm() < 0.08, "{side}: {middle} {wrist}");
+        assert!((middle - wrist.coords).norm() < 0.08, "{hand}: {middle} {wrist}");
     }
 }
 

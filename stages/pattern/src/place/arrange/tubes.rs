@@ -70,7 +70,7 @@ pub(super) fn bend(
             });
             places.insert(s.name.clone(), bent.collect());
         }
-        told.push(format!("{} around the {}, radius {:.0} mm", tube.join(", "), limb.name, radius * 1e3));
+        told.push(format!("{} around the {} arm, radius {:.0} mm", tube.join(", "), limb.hand, radius * 1e3));
     }
     told
 }

@@ -8,7 +8,7 @@
 //! skirts, shorts and vests tell little, so that a short garment with few girths may fit several
 //! sizes; the body is a woman's or a child's.
 
-use super::{Block, BlockStyle, Fitted, Front, Sides, Waist, refusal};
+use super::{Block, BlockStyle, FRONT, Fitted, Front, Sides, Waist, refusal};
 use crate::style::block::template::complete::Complete;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
@@ -120,8 +120,8 @@ impl Fitting {
         #[original] photos: Option<Set<Photo>>,
         cx: &Context,
     ) -> Result<Body, StageError> {
-        let front = outlines.get("front").ok_or_else(refusal::no_front)?;
-        let photo = photos.as_ref().and_then(|all| all.get("front"));
+        let front = outlines.get(FRONT).ok_or_else(refusal::no_front)?;
+        let photo = photos.as_ref().and_then(|all| all.get(FRONT));
         let fitted = |stray, complete| {
             let block = Block {
                 style: self.style,
@@ -131,7 +131,7 @@ impl Fitting {
                 waist: Waist::Plain,
                 front: Front::Whole,
             };
-            block.fitted("front", front, photo, self.style.forms(), &cx.for_entry("front"))
+            block.fitted(FRONT, front, photo, self.style.forms(), &cx.for_entry(FRONT))
         };
         let other = match self.complete {
             Complete::Nothing => Complete::Mirror,
@@ -238,7 +238,7 @@ struct Tape {
 
 impl Tape {
     fn of(form: &Form, fit: &Fit) -> Self {
-        let at = |name: &str| form.edges.iter().position(|e| e.name == name);
+        let at = |role| form.at(role);
         let across = |k: usize| 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
         let mean = |of: &dyn Fn(&[crate::style::block::template::bow::Bow]) -> f64| {
             0.5 * fit.sides.iter().map(|s| of(s)).sum::<f64>()
@@ -247,14 +247,14 @@ impl Tape {
         let low = mean(&|s| s[0].a.y);
         let chest = fit.chest(form);
         // Skirts and legs begin at the waist; of a dress it is where the skirt ends.
-        let waist = at("waist").map(across).or_else(|| at("skirt").map(|k| across(k + 1)));
+        let waist = at(EdgeRole::Waist).map(across).or_else(|| at(EdgeRole::Skirt).map(|k| across(k + 1)));
         let hip = fit.hip(form);
-        let length = match (at("neck"), at("skirt"), at("inseam"), at("outseam")) {
-            (Some(_), Some(_), ..) => Some((high - low, DRESS)),
-            (Some(_), None, Some(_), _) => Some((high - low, TRUNK)),
-            (Some(_), None, ..) => Some((high - low, TOP)),
-            (None, _, Some(inseam), Some(outseam)) => {
-                let upper = at("hip").map_or(0.0, |k| mean(&|s| s[k].length()));
+        let length = match [EdgeRole::Neck, EdgeRole::Skirt, EdgeRole::Inseam, EdgeRole::Outseam].map(at) {
+            [Some(_), Some(_), ..] => Some((high - low, DRESS)),
+            [Some(_), None, Some(_), _] => Some((high - low, TRUNK)),
+            [Some(_), None, ..] => Some((high - low, TOP)),
+            [None, _, Some(inseam), Some(outseam)] => {
+                let upper = at(EdgeRole::Hip).map_or(0.0, |k| mean(&|s| s[k].length()));
                 let [inner, outer] = [inseam, outseam].map(|k| mean(&|s| s[k].length()));
                 let outer = outer + upper;
                 (inner > SHORTS * outer).then_some((outer, LEGS))
@@ -265,7 +265,7 @@ impl Tape {
         let along = |s: &[crate::style::block::template::bow::Bow], k: usize| {
             s[k].length() + s[k + 1].length() + s[k + 1].b.x
         };
-        let sleeve = at("top").filter(|_| is_long).map(|k| mean(&|s| along(s, k)));
+        let sleeve = at(EdgeRole::Top).filter(|_| is_long).map(|k| mean(&|s| along(s, k)));
         Tape { girths: [chest, waist, hip], length, sleeve }
     }
 
@@ -337,7 +337,7 @@ fn out(fit: &Fit, cuff: usize) -> f64 {
 /// shoulders do not: caps turn, and sleeves hang lower than they lie.
 fn arms(form: &Form, fit: &Fit) -> f64 {
     let Some(k) = form.underarm() else {
-        return form.edges.iter().position(|e| e.name == "cuff").map_or(ARMS, |k| out(fit, k));
+        return form.at(EdgeRole::Cuff).map_or(ARMS, |k| out(fit, k));
     };
     let from_vertical = |way: Vector2| way.x.atan2(-way.y).to_degrees();
     let angle = |s: &Vec<crate::style::block::template::bow::Bow>| {

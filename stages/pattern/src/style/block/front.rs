@@ -3,6 +3,7 @@
 use crate::style::block::template::curve::Curve;
 use crate::style::block::template::flat::{Flat, Run, Side, straight};
 use crate::style::block::template::form::Form;
+use crate::style::block::template::piece_role::{Layer, PieceRole};
 use toile_core::prelude::*;
 
 /// How the front is cut.
@@ -19,7 +20,7 @@ pub(crate) enum Front {
 impl Front {
     /// Refuses what has no front to open.
     pub(super) fn check(self, form: &Form) -> Result<(), StageError> {
-        let has_front = form.edges.last().is_some_and(|e| e.name == "neck") && !form.begins_at_fork();
+        let has_front = form.ends_at(EdgeRole::Neck) && !form.begins_at_fork();
         if self == Front::Whole || has_front {
             return Ok(());
         }
@@ -29,11 +30,11 @@ impl Front {
 }
 
 /// One half of the front: hem, the edges up to the neck, the neck, and the middle down to the hem.
-pub(super) fn half(side: &Side, trunk: &[(&'static str, Run)], form: &Form) -> Flat {
+pub(super) fn half(side: &Side, trunk: &[(EdgeRole, Run)], form: &Form) -> Flat {
     let (hem, neck) = (side.edges[0].1, side.edges[form.edges.len() - 1].1);
     let middle: Curve = straight(neck.0[3], hem.0[0]);
-    let mut edges = vec![("hem", Run::Cubic(hem))];
+    let mut edges = vec![(EdgeRole::Hem, Run::Cubic(hem))];
     edges.extend(trunk.iter().cloned());
-    edges.extend([("neck", Run::Cubic(neck)), ("middle", Run::Cubic(middle))]);
-    Flat::of_trunk(format!("{}_front", side.word), side.own(&edges))
+    edges.extend([(EdgeRole::Neck, Run::Cubic(neck)), (EdgeRole::Middle, Run::Cubic(middle))]);
+    Flat::of_trunk(PieceRole::Half(Layer::Front, side.hand), side.own(&edges))
 }

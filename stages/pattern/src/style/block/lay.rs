@@ -3,9 +3,10 @@
 use super::pieces::{self, Making};
 use super::{seams, stand};
 use crate::style::block::template::fit::Fit;
-use crate::style::block::template::flat::{Flat, Layer};
+use crate::style::block::template::flat::Flat;
 use crate::style::block::template::form::Form;
 use crate::style::block::template::halves::Upright;
+use crate::style::block::template::piece_role::Layer;
 use nalgebra::Rotation2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -44,7 +45,7 @@ pub(super) fn pattern(
     body: &Body,
     cx: &Context,
 ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
-    let hung = if form.edges.last().is_some_and(|e| e.name == "neck") { "neck_left" } else { "waist_front" };
+    let hung = if form.ends_at(EdgeRole::Neck) { Hand::Left.name("neck") } else { "waist_front".to_owned() };
     for (_, fitted) in layers {
         let edges = &fitted.fit.sides[0];
         let [top, low] =
@@ -55,12 +56,13 @@ pub(super) fn pattern(
     let (mut flats, mut pieces, mut photos) = (Vec::new(), Vec::new(), BTreeMap::new());
     for (layer, fitted) in layers {
         let top = fitted.fit.sides[0].last().map_or(0.0, |neck| neck.a.y);
-        let stand = stand::Stand::of(body, hung, top)?;
+        let stand = stand::Stand::of(body, &hung, top)?;
         let lying = pieces::layer(&fitted.lying, form, making, *layer, false);
         for (flat, lying) in pieces::layer(&fitted.fit, form, making, *layer, true).into_iter().zip(lying) {
             let pose = Some(stand.pose(flat.origin, flat.turn, *layer));
-            pieces.push(Piece { pose, ..flat.piece() });
-            photos.insert(flat.name.clone(), fitted.frame.map(|f| Lying::of(f, fitted, &lying)));
+            let piece = Piece { pose, ..flat.piece() };
+            photos.insert(piece.name.clone(), fitted.frame.map(|f| Lying::of(f, fitted, &lying)));
+            pieces.push(piece);
             flats.push(flat);
         }
     }
@@ -89,7 +91,7 @@ struct Lying {
 impl Lying {
     fn of(photo: PhotoFrame, fitted: &Fitted, flat: &Flat) -> Self {
         let hidden = |judged: usize| (flat.origin.x > 0.0) == (judged == 1);
-        let is_seen = flat.part != BodyPart::Arm || !fitted.fit.judged.is_some_and(hidden);
+        let is_seen = flat.role.part() != BodyPart::Arm || !fitted.fit.judged.is_some_and(hidden);
         let mirrored = (!is_seen).then_some((flat.origin, flat.turn));
         Lying { frame: frame(photo, fitted, flat), piece: flat.piece(), mirrored }
     }

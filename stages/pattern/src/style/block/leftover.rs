@@ -64,7 +64,7 @@ impl Leftover {
         auto: bool,
         cx: &Context,
     ) -> Result<(), StageError> {
-        let has_neck = form.edges.last().is_some_and(|e| e.name == "neck");
+        let has_neck = form.ends_at(EdgeRole::Neck);
         let cm = 100.0 * self.rise * size;
         if has_neck && self.rise > HOOD {
             return Err(StageError::invalid(format!(

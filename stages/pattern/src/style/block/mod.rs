@@ -36,13 +36,17 @@ use tell::at_95;
 pub use template::alike::Sides;
 pub use template::complete::Complete;
 use template::fit::{Fit, Halves, fit};
-use template::flat::Layer;
 use template::form::Form;
 use template::halves::Upright;
 use template::marks::missing;
+pub(super) use template::piece_role::Layer;
 use toile_core::prelude::*;
 pub use waist::Waist;
 pub(super) use wearable::check as check_wearable;
+
+/// The photos that a block is cut from.
+const FRONT: &str = Layer::Front.word();
+const BACK: &str = Layer::Back.word();
 
 /// The share of the limit for a garment of which nobody has said what it is: a top whose sleeves
 /// lie against it looks a little like a skirt.
@@ -159,14 +163,14 @@ impl Block {
         #[original] photos: Option<Set<Photo>>,
         cx: &Context,
     ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
-        let front = outlines.get("front").ok_or_else(refusal::no_front)?;
-        for (name, _) in outlines.iter().filter(|(n, _)| *n != "front" && *n != "back") {
+        let front = outlines.get(FRONT).ok_or_else(refusal::no_front)?;
+        for (name, _) in outlines.iter().filter(|(n, _)| *n != FRONT && *n != BACK) {
             cx.warn(format!("a block is cut from \"front\" and \"back\"; the photo \"{name}\" is not used"));
         }
-        let photo = |name: &str| photos.as_ref().and_then(|all| all.get(name).or_else(|| all.get("front")));
-        let found = self.fitted("front", front, photo("front"), self.style.forms(), cx)?;
-        self.tell("front", front, &found, cx);
-        self.explains("front", &found, cx)?;
+        let photo = |name: &str| photos.as_ref().and_then(|all| all.get(name).or_else(|| all.get(FRONT)));
+        let found = self.fitted(FRONT, front, photo(FRONT), self.style.forms(), cx)?;
+        self.tell(FRONT, front, &found, cx);
+        self.explains(FRONT, &found, cx)?;
         let (name, form, before) = found;
         if self.style == BlockStyle::Auto {
             cx.note(format!(
@@ -174,13 +178,13 @@ impl Block {
                 form.word
             ));
         }
-        check_wearable(name, form, &before.fit, body, photo("front"))?;
+        check_wearable(name, form, &before.fit, body, photo(FRONT))?;
         let mirrored = mirrored(front);
-        let back = outlines.get("back").unwrap_or(&mirrored);
-        let found = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
-        self.tell("back", back, &found, cx);
-        if outlines.get("back").is_some_and(|o| !o.frame.is_some_and(|f| f.mirrored)) {
-            self.explains("back", &found, cx)?;
+        let back = outlines.get(BACK).unwrap_or(&mirrored);
+        let found = self.fitted(BACK, back, photo(BACK), vec![(name, form)], cx)?;
+        self.tell(BACK, back, &found, cx);
+        if outlines.get(BACK).is_some_and(|o| !o.frame.is_some_and(|f| f.mirrored)) {
+            self.explains(BACK, &found, cx)?;
         }
         let (.., behind) = found;
         cx.check()?;
@@ -289,7 +293,7 @@ impl Block {
         let Fitted { upright, lying: fit, .. } = fitted;
         tell::figures(panel, form, fit, cx);
         // What is seen in a mirror is told once.
-        if panel == "front" || !outline.frame.is_some_and(|f| f.mirrored) {
+        if panel == FRONT || !outline.frame.is_some_and(|f| f.mirrored) {
             tell::astray(panel, form, fit, upright.size, cx);
             match fit.judged {
                 Some(side) => tell::one_half(panel, form, side, cx),

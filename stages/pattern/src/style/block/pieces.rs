@@ -12,9 +12,9 @@ use super::front::{self, Front};
 use super::waist::{self, Waist};
 use crate::style::block::template::curve::Curve;
 use crate::style::block::template::fit::Fit;
-use crate::style::block::template::flat::{Flat, Layer, PARTS, Run, Side};
+use crate::style::block::template::flat::{Flat, FlatEdge, PARTS, Run, Side};
 use crate::style::block::template::form::Form;
-use toile_core::artifact::BodyPart;
+use crate::style::block::template::piece_role::{Layer, PieceRole};
 use toile_core::prelude::*;
 
 /// The shoulder point's distance from the axis, as a share of the armpit's.
@@ -82,19 +82,19 @@ fn trunk(sides: &[Side; 2], cut: &[Cutting], form: &Form, layer: Layer) -> Flat 
     let both = |k: usize| [0, 1].map(|s: usize| sides[s].laid(sides[s].edges[k].1));
     let [right_top, left_top] = both(last);
     let mut edges = sides[0].own(&cut[0].trunk);
-    edges.push((form.edges[last].name.to_owned(), Run::Chain(vec![right_top, left_top])));
+    edges.push(FlatEdge::only(form.edges[last].role, Run::Chain(vec![right_top, left_top])));
     edges.extend(sides[1].own(&cut[1].trunk));
     if !form.begins_at_fork() {
         let [right_hem, left_hem] = both(first);
-        edges.push(("hem".to_owned(), Run::Chain(vec![left_hem, right_hem])));
+        edges.push(FlatEdge::only(EdgeRole::Hem, Run::Chain(vec![left_hem, right_hem])));
     }
-    Flat::of_trunk(layer.word().into(), edges)
+    Flat::of_trunk(PieceRole::Whole(layer), edges)
 }
 
 /// A side's edges between hem and neck, and its sleeve's.
 struct Cutting {
-    trunk: Vec<(&'static str, Run)>,
-    sleeve: Option<Vec<(&'static str, Run)>>,
+    trunk: Vec<(EdgeRole, Run)>,
+    sleeve: Option<Vec<(EdgeRole, Run)>>,
 }
 
 impl Cutting {
@@ -112,13 +112,13 @@ impl Cutting {
         let shoulder_point = shoulder[0].0[0];
         let armhole = arched(armpit, shoulder_point);
         let mut trunk: Vec<_> = (first..k).map(run).collect();
-        trunk.extend([("armhole", Run::Cubic(armhole)), ("shoulder", Run::of(shoulder))]);
+        trunk.extend([(EdgeRole::Armhole, Run::Cubic(armhole)), (EdgeRole::Shoulder, Run::of(shoulder))]);
         let (underarm, cap) = match opened(&side.edges[k].1, &above) {
             Some(underarm) => (underarm, arched(underarm.0[0], shoulder_point).turned()),
             None => (side.edges[k].1, armhole.turned()),
         };
-        let (underarm, cap) = (("underarm", Run::Cubic(underarm)), ("cap", Run::Cubic(cap)));
-        Cutting { trunk, sleeve: Some(vec![underarm, run(k + 1), ("top", Run::of(above)), cap]) }
+        let (underarm, cap) = ((EdgeRole::Underarm, Run::Cubic(underarm)), (EdgeRole::Cap, Run::Cubic(cap)));
+        Cutting { trunk, sleeve: Some(vec![underarm, run(k + 1), (EdgeRole::Top, Run::of(above)), cap]) }
     }
 }
 
@@ -171,20 +171,18 @@ fn arched(a: Point2, b: Point2) -> Curve {
 }
 
 /// The layer of a sleeve: underarm, cuff, top, cap. Its grain runs along it.
-fn sleeve(side: &Side, edges: &[(&'static str, Run)], layer: Layer) -> Option<Flat> {
-    let edges = side.named(edges);
-    let middle = |name: &str| {
-        let run = edges.iter().find(|e| e.0 == name).map(|e| &e.1)?;
-        let Run::Cubic(c) = run else { return None };
+fn sleeve(side: &Side, edges: &[(EdgeRole, Run)], layer: Layer) -> Option<Flat> {
+    let edges = side.alone(edges);
+    let middle = |role: EdgeRole| {
+        let Run::Cubic(c) = &edges.iter().find(|e| e.role == role)?.run else { return None };
         Some(nalgebra::center(&c.0[0], &c.0[3]))
     };
-    let (cuff, cap) = (middle("cuff")?, middle("cap")?);
+    let (cuff, cap) = (middle(EdgeRole::Cuff)?, middle(EdgeRole::Cap)?);
     let way = (cap - cuff).try_normalize(1e-9)?;
     Some(Flat {
-        name: format!("{}_sleeve_{}", side.word, layer.word()),
-        edges: edges.iter().map(|(name, run)| ((*name).to_owned(), run.clone())).collect(),
+        role: PieceRole::Sleeve(layer, side.hand),
+        edges,
         lines: Vec::new(),
-        part: BodyPart::Arm,
         origin: cap,
         turn: way.y.atan2(way.x) - std::f64::consts::FRAC_PI_2,
     })
@@ -196,11 +194,10 @@ fn sleeve(side: &Side, edges: &[(&'static str, Run)], layer: Layer) -> Option<Fl
 /// the other leg. A block gives them 15 % of the seat's girth, a third of it before and two behind
 /// (Aldrich 2008); what the fork shows beyond the seat's width is part of it.
 fn leg(side: &Side, layer: Layer) -> Flat {
-    let edge = |name: &str| side.edges.iter().find(|e| e.0 == name).map(|e| e.1);
     let (low, high) = (side.edges[0].1.0[0], side.edges[side.edges.len() - 1].1.0[3]);
     let width = |share: f64| {
         let y = low.y + share * (high.y - low.y);
-        let sides = ["outseam", "hip"].into_iter().filter_map(edge);
+        let sides = [EdgeRole::Outseam, EdgeRole::Hip].into_iter().filter_map(|role| side.edge(role));
         // The one that passes there; at the corner between them both do.
         let passes = |c: &Curve| (c.0[0].y - y) * (c.0[3].y - y) <= 0.0;
         let mut all: Vec<Curve> = sides.collect();
@@ -227,18 +224,13 @@ fn leg(side: &Side, layer: Layer) -> Flat {
     };
     // Straight down, then out to the point.
     let rise = Curve([high, high + (low - high) * STRAIGHT, low + out(HOLLOW), tip]);
-    let all = side.edges.iter().copied().chain([("rise", rise)]);
-    let all = all.map(|(name, c)| match name {
-        "inseam" => (name, Curve([tip, inner(&c), c.0[2], c.0[3]])),
-        _ => (name, c),
+    let all = side.edges.iter().copied().chain([(EdgeRole::Rise, rise)]);
+    let all = all.map(|(role, c)| match role {
+        EdgeRole::Inseam => (role, Curve([tip, inner(&c), c.0[2], c.0[3]])),
+        _ => (role, c),
     });
-    let mut edges: Vec<(String, Run)> =
-        all.map(|(name, c)| (name.to_owned(), Run::Cubic(side.laid(c)))).collect();
-    if side.mirrored {
-        edges.reverse();
-    }
-    let name = format!("{}_leg_{}", side.word, layer.word());
-    Flat { part: BodyPart::Leg, ..Flat::of_trunk(name, edges) }
+    let edges: Vec<_> = all.map(|(role, c)| (role, Run::Cubic(c))).collect();
+    Flat::of_trunk(PieceRole::Leg(layer, side.hand), side.alone(&edges))
 }
 
 /// How far out a curve lies at a height: where it passes it, or its end that is nearer.

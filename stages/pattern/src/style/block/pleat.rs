@@ -7,7 +7,7 @@
 //! the photo is drawn apart as well.
 
 use crate::style::block::template::curve::Curve;
-use crate::style::block::template::flat::{Flat, Run, straight};
+use crate::style::block::template::flat::{Flat, FlatEdge, PleatLine, Run, straight};
 use toile_core::prelude::*;
 
 /// A pleat's seam begins so far below the waist, metres: its layers hang free of the edge.
@@ -44,28 +44,28 @@ pub(super) struct Pleats {
 }
 
 impl Pleats {
-    /// The piece with its pleats; it has one edge `waist`, that runs towards negative u, and one
-    /// `hem`, that runs back.
+    /// The piece with its pleats; it has one waist, that runs towards negative u, and one hem, that
+    /// runs back.
     pub(super) fn let_into(self, flat: Flat) -> Flat {
         let half = 0.5 * f64::from(self.count) * self.cloth;
         let (mut tops, mut feet) = (Vec::new(), Vec::new());
         let mut at = half;
         let mut edges = Vec::with_capacity(flat.edges.len());
-        for (name, run) in flat.edges {
-            let moved = match name.as_str() {
-                "waist" => {
+        for FlatEdge { role, hand, run } in flat.edges {
+            let run = match role {
+                EdgeRole::Waist => {
                     let (run, found) = self.parted(&run, half, -self.cloth);
                     (tops, at) = (found, -half);
                     run
                 }
-                "hem" => {
+                EdgeRole::Hem => {
                     let (run, found) = self.parted(&run, -half, self.cloth);
                     (feet, at) = (found, half);
                     run
                 }
                 _ => run.changed(false, |c| c.moved(|p| Point2::new(p.x + at, p.y))),
             };
-            edges.push((name, moved));
+            edges.push(FlatEdge { role, hand, run });
         }
         let strips = tops.into_iter().zip(feet.into_iter().rev()).enumerate();
         let lines = strips.flat_map(|(k, ([right, left], [foot_left, foot_right]))| {
@@ -76,7 +76,7 @@ impl Pleats {
 
     /// The lines of a pleat: those that are sewn, and the edges at which the cloth is folded, down
     /// to the hem.
-    fn lines(self, number: usize, tops: [Point2; 2], feet: [Point2; 2]) -> Vec<(String, [Point2; 2])> {
+    fn lines(self, number: usize, tops: [Point2; 2], feet: [Point2; 2]) -> Vec<(PleatLine, [Point2; 2])> {
         let at = |[a, b]: [Point2; 2], share: f64| a + (b - a) * share;
         let length = (feet[0] - tops[0]).norm().max(f64::MIN_POSITIVE);
         let sewn = (self.stitched / length).min(1.0);
@@ -85,9 +85,10 @@ impl Pleats {
             let [top, foot] = [at(tops, share), at(feet, share)];
             [at([top, foot], from), at([top, foot], to)]
         };
-        let named = |word: String, line| (format!("pleat_{number}_{word}"), line);
-        let mut lines =
-            vec![named("a".into(), along(0.0, top, sewn)), named("b".into(), along(1.0, top, sewn))];
+        let mut lines = vec![
+            (PleatLine::A(number), along(0.0, top, sewn)),
+            (PleatLine::B(number), along(1.0, top, sewn)),
+        ];
         let folds: &[f64] = match self.fold {
             Fold::Knife => &[0.5],
             Fold::Box => &[0.25, 0.75],
@@ -96,7 +97,7 @@ impl Pleats {
             folds
                 .iter()
                 .enumerate()
-                .map(|(k, share)| named(format!("fold_{}", k + 1), along(*share, 0.0, 1.0))),
+                .map(|(k, share)| (PleatLine::Fold(number, k + 1), along(*share, 0.0, 1.0))),
         );
         let below: &[f64] = match self.fold {
             Fold::Knife => &[0.0],
@@ -106,7 +107,7 @@ impl Pleats {
             below
                 .iter()
                 .enumerate()
-                .map(|(k, share)| named(format!("edge_{}", k + 1), along(*share, sewn, 1.0))),
+                .map(|(k, share)| (PleatLine::Edge(number, k + 1), along(*share, sewn, 1.0))),
         );
         lines
     }

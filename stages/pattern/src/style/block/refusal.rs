@@ -35,8 +35,8 @@ pub(super) fn none(panel: &str, reasons: &[(&Form, &'static str)]) -> StageError
 /// A form that fits badly, with its worst edge.
 pub(super) fn strays(panel: &str, form: &Form, fit: &Fit, stray: f64, auto: bool) -> StageError {
     let worst =
-        form.edges.iter().zip(&fit.misses).map(|(e, m)| (e.name, if m.is_empty() { 0.0 } else { at_95(m) }));
-    let (edge, most) = worst.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("hem", stray));
+        form.edges.iter().zip(&fit.misses).map(|(e, m)| (e.role, if m.is_empty() { 0.0 } else { at_95(m) }));
+    let (edge, most) = worst.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((EdgeRole::Hem, stray));
     let looks = if auto { "looks most like" } else { "was to be" };
     StageError::invalid(format!(
         "\"{panel}\" {looks} {}, but strays from one by {:.0} mm, most at its {edge}, by {:.0} mm",

@@ -1,95 +1,107 @@
 //! What of a block is sewn to what.
 
-use crate::style::block::template::flat::Flat;
+use crate::style::block::template::flat::{Flat, PleatLine};
 use crate::style::block::template::form::Form;
+use crate::style::block::template::piece_role::{Layer, PieceRole};
 use toile_core::prelude::*;
 
 /// Edges that front and back pieces do not share a seam at: they stay open, or meet another piece.
-const NOT_SHARED: [&str; 9] = ["hem", "neck", "waist", "cuff", "cap", "rise", "armhole", "joint", "middle"];
+const NOT_SHARED: [EdgeRole; 9] = [
+    EdgeRole::Hem,
+    EdgeRole::Neck,
+    EdgeRole::Waist,
+    EdgeRole::Cuff,
+    EdgeRole::Cap,
+    EdgeRole::Rise,
+    EdgeRole::Armhole,
+    EdgeRole::Joint,
+    EdgeRole::Middle,
+];
 
 /// Edges of lengths that differ by more than this share are gathered.
 const EASED: f64 = 0.02;
 
+/// An edge of the block: of which piece, what it is, and on which side.
+type BlockEdge = (PieceRole, EdgeRole, Option<Hand>);
+
 /// The seams of a block with these pieces.
 pub(super) fn seams(pieces: &[Flat], form: &Form, fold: PleatFold) -> Vec<PatternSeam> {
-    let fronts = pieces.iter().filter(|p| p.name.ends_with("front"));
-    let mut found: Vec<PatternSeam> = fronts.flat_map(shared).collect();
-    let opens = pieces.iter().any(|p| p.name == "left_front");
+    let mut found: Vec<PatternSeam> = pieces.iter().flat_map(shared).collect();
+    let half = |hand| PieceRole::Half(Layer::Front, hand);
+    let opens = pieces.iter().any(|p| p.role == half(Hand::Left));
     if opens {
-        let [left, right] = ["left", "right"].map(|side| (format!("{side}_front"), format!("middle_{side}")));
-        found.push(seam("middle", [&left.0, &left.1], [&right.0, &right.1]));
+        let [left, right] = Hand::BOTH.map(|hand| (half(hand), EdgeRole::Middle, Some(hand)));
+        found.push(seam(EdgeRole::Middle.word(), left, right));
     }
-    let places = ["front", "back"].iter().flat_map(|layer| ["left", "right"].map(|side| (*layer, side)));
     if form.underarm().is_some() {
-        found.extend(places.map(|(layer, side)| match (layer, opens) {
-            ("front", true) => set_in(pieces, &format!("{side}_front"), layer, side),
-            _ => set_in(pieces, layer, layer, side),
+        let places = Layer::BOTH.into_iter().flat_map(|layer| Hand::BOTH.map(|hand| (layer, hand)));
+        found.extend(places.map(|(layer, hand)| {
+            let is_half = opens && layer == Layer::Front;
+            let trunk = if is_half { half(hand) } else { PieceRole::Whole(layer) };
+            set_in(pieces, trunk, PieceRole::Sleeve(layer, hand), hand)
         }));
     }
-    for band in pieces.iter().filter(|p| p.name.starts_with("band_")) {
-        let skirt = band.name.trim_start_matches("band_");
-        let gathers = seam("waist", [skirt, "waist"], [&band.name, "joint"]);
+    for band in pieces {
+        let PieceRole::Band(layer) = band.role else { continue };
+        let skirt = (PieceRole::Whole(layer), EdgeRole::Waist, None);
+        let gathers = seam(EdgeRole::Waist.word(), skirt, (band.role, EdgeRole::Joint, None));
         found.push(PatternSeam { kind: SeamKind::Gathered, ..gathers });
     }
     found.extend(pieces.iter().flat_map(|p| pleats(p, fold)));
     if form.has_legs() {
-        found.extend(["front", "back"].map(rise));
+        found.extend(Layer::BOTH.map(rise));
     }
     found
 }
 
 /// The seams of a front piece with the piece behind it.
-fn shared(front: &Flat) -> Vec<PatternSeam> {
-    // Both halves of a front meet one back.
-    let back = match front.name.as_str() {
-        "left_front" | "right_front" => "back".to_owned(),
-        name => name.replace("front", "back"),
-    };
-    let is_shared = |name: &&String| {
-        let word = name.trim_end_matches("_left").trim_end_matches("_right");
-        !NOT_SHARED.contains(&word)
-    };
-    let names = front.edges.iter().map(|(name, _)| name).filter(is_shared);
-    names.map(|edge| seam(edge, [&front.name, edge], [&back, edge])).collect()
+fn shared(front: &Flat) -> impl Iterator<Item = PatternSeam> + '_ {
+    let edges = front.edges.iter().filter(|e| !NOT_SHARED.contains(&e.role));
+    let pairs = front.role.behind().into_iter().flat_map(move |back| edges.clone().map(move |e| (back, e)));
+    pairs.map(|(back, e)| seam(&e.name(), (front.role, e.role, e.hand), (back, e.role, e.hand)))
 }
 
 /// A sleeve's cap in its armhole; a longer cap is eased in.
-fn set_in(pieces: &[Flat], trunk: &str, layer: &str, side: &str) -> PatternSeam {
-    let (armhole, sleeve) = (format!("armhole_{side}"), format!("{side}_sleeve_{layer}"));
-    let length = |piece: &str, edge: &str| {
-        let edges = pieces.iter().filter(|p| p.name == piece).flat_map(|p| &p.edges);
-        edges.filter(|e| e.0 == edge).map(|e| e.1.length()).sum::<f64>()
+fn set_in(pieces: &[Flat], trunk: PieceRole, sleeve: PieceRole, hand: Hand) -> PatternSeam {
+    let (armhole, cap) = ((trunk, EdgeRole::Armhole, Some(hand)), (sleeve, EdgeRole::Cap, None));
+    let length = |(piece, role, hand): BlockEdge| {
+        let edges = pieces.iter().filter(|p| p.role == piece).flat_map(|p| &p.edges);
+        edges.filter(|e| (e.role, e.hand) == (role, hand)).map(|e| e.run.length()).sum::<f64>()
     };
-    let differ = (length(&sleeve, "cap") / length(trunk, &armhole).max(f64::MIN_POSITIVE) - 1.0).abs();
+    let differ = (length(cap) / length(armhole).max(f64::MIN_POSITIVE) - 1.0).abs();
     let kind = if differ > EASED { SeamKind::Gathered } else { SeamKind::Matched };
-    PatternSeam { kind, ..seam("armhole", [trunk, &armhole], [&sleeve, "cap"]) }
+    PatternSeam { kind, ..seam(EdgeRole::Armhole.word(), armhole, cap) }
 }
 
 /// The pleats of a piece: of each, one line is laid on the other.
 fn pleats(piece: &Flat, fold: PleatFold) -> impl Iterator<Item = PatternSeam> + '_ {
-    let words = piece.lines.iter().filter_map(|(name, _)| name.strip_suffix("_a"));
-    words.map(move |word| {
-        let side = |end: &str| {
-            let edge = EdgeRef { panel: piece.name.clone(), edge: format!("{word}_{end}") };
+    let numbers = piece.lines.iter().filter_map(|(line, _)| match line {
+        PleatLine::A(number) => Some(*number),
+        _ => None,
+    });
+    numbers.map(move |number| {
+        let side = |line: PleatLine| {
+            let edge = EdgeRef { panel: piece.role.name(), edge: line.name() };
             vec![EdgeUse { edge, reversed: false }]
         };
-        let name = format!("{word} of {}", piece.name);
-        PatternSeam { name, kind: SeamKind::Pleat(fold), sides: vec![side("a"), side("b")] }
+        let name = format!("pleat_{number} of {}", piece.role.name());
+        let sides = vec![side(PleatLine::A(number)), side(PleatLine::B(number))];
+        PatternSeam { name, kind: SeamKind::Pleat(fold), sides }
     })
 }
 
 /// The seam in the middle of trousers.
-fn rise(layer: &str) -> PatternSeam {
-    let leg = |side: &str| format!("{side}_leg_{layer}");
-    seam("rise", [&leg("left"), "rise"], [&leg("right"), "rise"])
+fn rise(layer: Layer) -> PatternSeam {
+    let [left, right] = Hand::BOTH.map(|hand| (PieceRole::Leg(layer, hand), EdgeRole::Rise, None));
+    seam(EdgeRole::Rise.word(), left, right)
 }
 
 /// Two edges that run counter-clockwise and meet face to face: one of them is walked against its
 /// direction.
-fn seam(word: &str, a: [&str; 2], b: [&str; 2]) -> PatternSeam {
-    let one = |[panel, edge]: [&str; 2], reversed: bool| {
-        vec![EdgeUse { edge: EdgeRef { panel: panel.to_owned(), edge: edge.to_owned() }, reversed }]
+fn seam(word: &str, a: BlockEdge, b: BlockEdge) -> PatternSeam {
+    let one = |(piece, role, hand): BlockEdge, reversed: bool| {
+        vec![EdgeUse { edge: EdgeRef { panel: piece.name(), edge: role.name(hand) }, reversed }]
     };
-    let name = format!("{word} of {}", a[0]);
+    let name = format!("{word} of {}", a.0.name());
     PatternSeam { name, kind: SeamKind::Matched, sides: vec![one(a, false), one(b, true)] }
 }

@@ -1,7 +1,7 @@
 //! Where the pieces of a garment stand around a body: as they lie, front before it and back behind
 //! it.
 
-use crate::style::block::template::flat::Layer;
+use crate::style::block::template::piece_role::Layer;
 use nalgebra::Rotation2;
 use toile_core::prelude::*;
 
@@ -30,7 +30,7 @@ impl Stand {
             .hint("take a Mannequin")
         })?;
         let crown = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
-        let side = body.landmarks.get("shoulder_left").map_or(f64::INFINITY, |p| p.x.abs());
+        let side = body.landmark("shoulder", Hand::Left).map_or(f64::INFINITY, |p| p.x.abs());
         let trunk = || {
             let counts = |p: &&Point3| p.x.abs() < side && p.y > TRUNK.0 * crown && p.y < TRUNK.1 * crown;
             body.positions.iter().filter(counts).map(|p| p.z)

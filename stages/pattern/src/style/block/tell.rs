@@ -23,17 +23,17 @@ pub(super) fn at_95(misses: &[f64]) -> f64 {
 /// How far the outline strays from the template, by edges.
 pub(super) fn figures(panel: &str, form: &Form, fit: &Fit, cx: &Context) {
     for (e, misses) in form.edges.iter().zip(&fit.misses).filter(|(_, m)| !m.is_empty()) {
-        cx.figure(&format!("stray_{panel}_{}", e.name), at_95(misses) * 1e3, "mm");
+        cx.figure(&format!("stray_{panel}_{}", e.role), at_95(misses) * 1e3, "mm");
     }
 }
 
 /// Tells edges from which the outline strays far, all in one sentence.
 pub(super) fn astray(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
     let strays = form.edges.iter().zip(&fit.misses).filter(|(_, m)| !m.is_empty());
-    let far: Vec<(&str, f64)> =
-        strays.map(|(e, m)| (e.name, at_95(m))).filter(|(_, stray)| *stray > TOLD * size).collect();
+    let far: Vec<(EdgeRole, f64)> =
+        strays.map(|(e, m)| (e.role, at_95(m))).filter(|(_, stray)| *stray > TOLD * size).collect();
     let list: Vec<String> =
-        far.iter().map(|(name, stray)| format!("its {name} by {:.0} mm", stray * 1e3)).collect();
+        far.iter().map(|(role, stray)| format!("its {role} by {:.0} mm", stray * 1e3)).collect();
     let text = format!("\"{panel}\" strays from {}, and is cut as one: {}", form.word, and(&list));
     match far.iter().map(|(_, stray)| *stray).fold(0.0, f64::max) {
         most if most > FAR * size => cx.warn(text),
@@ -69,14 +69,19 @@ pub(super) fn uneven(panel: &str, form: &Form, fit: &Fit, size: f64, sides: Side
     let mut uneven: Vec<(String, f64)> = Vec::new();
     let mut k = 0;
     while k < form.edges.len() {
-        let name = form.edges[k].name;
+        let role = form.edges[k].role;
         // Where the one ends and the other begins a flat garment does not show.
-        let goes_on = |next: &str| matches!((name, next), ("top", "shoulder") | ("side" | "outseam", "hip"));
-        let both = form.edges.get(k + 1).is_some_and(|next| goes_on(next.name));
+        let goes_on = |next: EdgeRole| {
+            matches!(
+                (role, next),
+                (EdgeRole::Top, EdgeRole::Shoulder) | (EdgeRole::Side | EdgeRole::Outseam, EdgeRole::Hip)
+            )
+        };
+        let both = form.edges.get(k + 1).is_some_and(|next| goes_on(next.role));
         let length = |s: usize| (k..=k + usize::from(both)).map(|i| fit.sides[s][i].length()).sum::<f64>();
         let differ = (length(0) - length(1)).abs();
         if differ > TOLD * size {
-            uneven.push((format!("its {name} by {:.0} mm", differ * 1e3), differ));
+            uneven.push((format!("its {role} by {:.0} mm", differ * 1e3), differ));
         }
         k += 1 + usize::from(both);
     }

@@ -7,8 +7,9 @@
 
 use super::pleat::{Fold, Pleats};
 use crate::style::block::template::curve::Curve;
-use crate::style::block::template::flat::{Flat, Layer, Run, Side, straight};
+use crate::style::block::template::flat::{Flat, FlatEdge, Run, Side, straight};
 use crate::style::block::template::form::Form;
+use crate::style::block::template::piece_role::{Layer, PieceRole};
 use toile_core::prelude::*;
 
 /// How a skirt is held at the waist.
@@ -55,7 +56,7 @@ impl Waist {
             return Ok(());
         }
         let wrong = |text: String, hint: &str| Err(StageError::invalid(text).hint(hint).at("waist"));
-        if form.edges.last().is_none_or(|e| e.name != "waist") || form.has_legs() {
+        if !form.ends_at(EdgeRole::Waist) || form.has_legs() {
             let word = if let Waist::Pleated { .. } = self { "pleated" } else { "gathered" };
             return wrong(
                 format!("only a skirt is {word} at the waist, and this is {}", form.word),
@@ -106,25 +107,24 @@ impl Waist {
 pub(super) fn gathered(sides: &[Side; 2], layer: Layer, fullness: f64, band: f64, is_cut: bool) -> Vec<Flat> {
     let halves = [0, 1].map(|k| SkirtHalf::of(&sides[k], fullness, band, is_cut));
     let both = |of: fn(&SkirtHalf) -> Curve| [0, 1].map(|k: usize| sides[k].laid(of(&halves[k])));
-    let side = |k: usize| sides[k].own(&[("side", halves[k].side.clone())]);
-    let end = |k: usize| sides[k].own(&[("end", Run::Cubic(halves[k].end))]);
+    let side = |k: usize| sides[k].own(&[(EdgeRole::Side, halves[k].side.clone())]);
+    let end = |k: usize| sides[k].own(&[(EdgeRole::End, Run::Cubic(halves[k].end))]);
     let ([right, left], [right_hem, left_hem]) = (both(|h| h.top), both(|h| h.hem));
     let skirt = side(0)
         .into_iter()
-        .chain([("waist".to_owned(), Run::Chain(vec![right, left]))])
+        .chain([FlatEdge::only(EdgeRole::Waist, Run::Chain(vec![right, left]))])
         .chain(side(1))
-        .chain([("hem".to_owned(), Run::Chain(vec![left_hem, right_hem]))]);
+        .chain([FlatEdge::only(EdgeRole::Hem, Run::Chain(vec![left_hem, right_hem]))]);
     let ([right, left], [right_low, left_low]) = (both(|h| h.upper), both(|h| h.lower));
     let upper = Run::Chain(vec![right, left]);
     let lower = Run::Chain(vec![left_low, right_low]);
     let strip = end(0)
         .into_iter()
-        .chain([("waist".to_owned(), upper)])
+        .chain([FlatEdge::only(EdgeRole::Waist, upper)])
         .chain(end(1))
-        .chain([("joint".to_owned(), lower)]);
-    let word = layer.word();
-    let band = Flat::of_trunk(format!("band_{word}"), strip.collect());
-    vec![Flat::of_trunk(word.to_owned(), skirt.collect()), band]
+        .chain([FlatEdge::only(EdgeRole::Joint, lower)]);
+    let band = Flat::of_trunk(PieceRole::Band(layer), strip.collect());
+    vec![Flat::of_trunk(PieceRole::Whole(layer), skirt.collect()), band]
 }
 
 /// One half of the skirt, upwards, and of its band.

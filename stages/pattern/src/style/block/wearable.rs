@@ -75,14 +75,13 @@ fn too_small(g: &Girth, name: &str, body: &Body, photo: Option<&Photo>) -> Stage
 
 /// What can be compared.
 fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
-    let at = |name: &str| form.edges.iter().position(|e| e.name == name);
     let across = |k: usize| 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
     let tape = |what, of_body, level: &str, garment: Option<f64>| {
         Some(Girth { what, garment: garment?, of_body, body: *body.measurements.get(level)? })
     };
     let found = [
         tape("chest", "the body's", "bust", fit.chest(form)),
-        tape("waist", "the body's", "waist", at("waist").map(across)),
+        tape("waist", "the body's", "waist", form.at(EdgeRole::Waist).map(across)),
         tape("hip", "the body's", "hip", fit.hip(form)),
     ];
     found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
@@ -92,7 +91,7 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
 /// long.
 fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
     let cuff = form.underarm()? + 1;
-    let mark = |name: &str| body.landmarks.get(&format!("{name}_left")).copied();
+    let mark = |name: &str| body.landmark(name, Hand::Left);
     let (shoulder, elbow, wrist) = (mark("shoulder")?, mark("elbow")?, mark("wrist")?);
     let (upper, fore) = ((elbow - shoulder).norm(), (wrist - elbow).norm());
     let armpit = mark("armpit").map_or(0.0, |p| (p - shoulder).dot(&(elbow - shoulder)) / upper.max(1e-6));

@@ -42,6 +42,6 @@ pub(super) fn in_the_way(
             )
         })
     };
-    let is_shoulder = |seam: &&Seam| seam.a.edge.starts_with("shoulder");
+    let is_shoulder = |seam: &&Seam| Hand::split(&seam.a.edge).0 == EdgeRole::Shoulder.word();
     seams.iter().filter(|s| !is_shoulder(s)).filter_map(told).collect()
 }

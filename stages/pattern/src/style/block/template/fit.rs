@@ -15,7 +15,7 @@ use crate::style::block::template::form::{EdgeForm, Form};
 use crate::style::block::template::halves::Upright;
 use crate::style::block::template::segment::{Cut, cut};
 use nalgebra::{DMatrix, DVector, Rotation2};
-use toile_core::artifact::{Point2, Vector2};
+use toile_core::artifact::{EdgeRole, Point2, Vector2};
 
 /// Spread of an outline about its template, as a share of the garment's size.
 const SPREAD: f64 = 0.006;
@@ -92,7 +92,12 @@ impl Fit {
     /// Around the garment where its hip is widest, as it lies; of trousers above the fork, since
     /// legs may flare. `None` for what has no hip.
     pub(crate) fn hip(&self, form: &Form) -> Option<f64> {
-        let edges = || form.edges.iter().enumerate().filter(|(_, e)| e.name == "hip" || e.name == "outseam");
+        let edges = || {
+            form.edges
+                .iter()
+                .enumerate()
+                .filter(|(_, e)| e.role == EdgeRole::Hip || e.role == EdgeRole::Outseam)
+        };
         edges().next()?;
         let widest = |s: &Vec<Bow>| {
             let points = edges().flat_map(|(k, _)| s[k].points());
@@ -136,7 +141,7 @@ impl Fit {
         if let Some(k) = form.armpit() {
             return Some(2.0 * sides().map(|s| s[k].a.x).sum::<f64>());
         }
-        let k = form.edges.iter().position(|e| e.name == "cuff")?;
+        let k = form.at(EdgeRole::Cuff)?;
         let narrowest = |s: &Vec<Bow>| s[k - 1].points().iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
         Some(2.0 * sides().map(narrowest).sum::<f64>())
     }

@@ -3,8 +3,8 @@
 use crate::style::block::template::curve::Curve;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
+use crate::style::block::template::piece_role::{Layer, PieceRole};
 use nalgebra::Rotation2;
-use toile_core::artifact::BodyPart;
 use toile_core::prelude::*;
 
 /// Parts in which hem and neck are drawn.
@@ -13,15 +13,55 @@ pub(crate) const PARTS: usize = 24;
 /// A piece in the frame of the garment's axis: u to the right as one looks at it, v up.
 #[derive(Debug, Clone)]
 pub(crate) struct Flat {
-    pub name: String,
+    pub role: PieceRole,
     /// Its edges, counter-clockwise; each starts where the one before ends.
-    pub edges: Vec<(String, Run)>,
-    /// Lines of its pleats; `pleat_1_a` is sewn to `pleat_1_b`.
-    pub lines: Vec<(String, [Point2; 2])>,
-    pub part: BodyPart,
+    pub edges: Vec<FlatEdge>,
+    /// Lines of its pleats.
+    pub lines: Vec<(PleatLine, [Point2; 2])>,
     /// Where its own origin lies, and how far its own axes are turned, radians.
     pub origin: Point2,
     pub turn: f64,
+}
+
+/// An edge of such a piece.
+#[derive(Debug, Clone)]
+pub(crate) struct FlatEdge {
+    pub role: EdgeRole,
+    /// The wearer's, where the piece has such an edge on both sides.
+    pub hand: Option<Hand>,
+    pub run: Run,
+}
+
+impl FlatEdge {
+    /// The only one of its kind in the piece.
+    pub(crate) fn only(role: EdgeRole, run: Run) -> Self {
+        FlatEdge { role, hand: None, run }
+    }
+
+    pub(crate) fn name(&self) -> String {
+        self.role.name(self.hand)
+    }
+}
+
+/// A line of the pleat of that number: those that are sewn to each other, and the folds and edges
+/// of the laid cloth, with their own numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum PleatLine {
+    A(usize),
+    B(usize),
+    Fold(usize, usize),
+    Edge(usize, usize),
+}
+
+impl PleatLine {
+    pub(crate) fn name(self) -> String {
+        match self {
+            PleatLine::A(pleat) => format!("pleat_{pleat}_a"),
+            PleatLine::B(pleat) => format!("pleat_{pleat}_b"),
+            PleatLine::Fold(pleat, k) => format!("pleat_{pleat}_fold_{k}"),
+            PleatLine::Edge(pleat, k) => format!("pleat_{pleat}_edge_{k}"),
+        }
+    }
 }
 
 /// How an edge runs.
@@ -84,62 +124,38 @@ impl Run {
 
 impl Flat {
     /// A piece of the trunk in the garment's own frame.
-    pub(crate) fn of_trunk(name: String, edges: Vec<(String, Run)>) -> Flat {
-        Flat { name, edges, lines: Vec::new(), part: BodyPart::Body, origin: Point2::origin(), turn: 0.0 }
+    pub(crate) fn of_trunk(role: PieceRole, edges: Vec<FlatEdge>) -> Flat {
+        Flat { role, edges, lines: Vec::new(), origin: Point2::origin(), turn: 0.0 }
     }
 
     /// The piece in its own coordinates; it stands nowhere yet.
     pub(crate) fn piece(&self) -> Piece {
         let to = |p: Point2| Point2::from(Rotation2::new(-self.turn) * (p - self.origin));
-        let edge = |(name, run): &(String, Run)| PieceEdge { name: name.clone(), curve: run.moved(to) };
-        let line = |(name, ends): &(String, [Point2; 2])| PieceLine {
-            name: name.clone(),
+        let edge = |e: &FlatEdge| PieceEdge { name: e.name(), curve: e.run.moved(to) };
+        let line = |(line, ends): &(PleatLine, [Point2; 2])| PieceLine {
+            name: line.name(),
             purpose: LinePurpose::Pleat,
             points: ends.map(to).into(),
         };
         Piece {
-            name: self.name.clone(),
+            name: self.role.name(),
             outer: PatternLoop {
-                corners: self.edges.iter().map(|(_, run)| to(run.start())).collect(),
+                corners: self.edges.iter().map(|e| to(e.run.start())).collect(),
                 edges: self.edges.iter().map(edge).collect(),
             },
             lines: self.lines.iter().map(line).collect(),
-            body_part: Some(self.part),
+            body_part: Some(self.role.part()),
             ..Piece::default()
         }
     }
 }
 
-/// The layer of a garment: before the wearer or behind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Layer {
-    Front,
-    Back,
-}
-
-impl Layer {
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Layer::Front => "front",
-            Layer::Back => "back",
-        }
-    }
-
-    /// The wearer's side that lies at positive u, or at negative.
-    fn side(self, k: usize) -> &'static str {
-        match (self, k) {
-            (Layer::Front, 0) | (Layer::Back, 1) => "left",
-            _ => "right",
-        }
-    }
-}
-
-/// One side of a template: its edges by name, as they lie (the second side's are mirrored back),
+/// One side of a template: its edges, as they lie (the second side's are mirrored back),
 /// each from below to above.
 pub(crate) struct Side {
-    pub edges: Vec<(&'static str, Curve)>,
+    pub edges: Vec<(EdgeRole, Curve)>,
     pub mirrored: bool,
-    pub word: &'static str,
+    pub hand: Hand,
 }
 
 fn flip(p: Point2) -> Point2 {
@@ -148,9 +164,9 @@ fn flip(p: Point2) -> Point2 {
 
 impl Side {
     pub(crate) fn of(fit: &Fit, form: &Form, layer: Layer, k: usize) -> Side {
-        let names = form.edges.iter().map(|e| e.name);
-        let edges = names.zip(fit.sides[k].iter().map(|b| Curve::from(*b))).collect();
-        Side { edges, mirrored: k == 1, word: layer.side(k) }
+        let roles = form.edges.iter().map(|e| e.role);
+        let edges = roles.zip(fit.sides[k].iter().map(|b| Curve::from(*b))).collect();
+        Side { edges, mirrored: k == 1, hand: layer.hand(k) }
     }
 
     /// A curve as it lies, so that loops run counter-clockwise.
@@ -158,9 +174,16 @@ impl Side {
         if self.mirrored { c.moved(flip).turned() } else { c }
     }
 
-    /// Named edges as they lie and in counter-clockwise order.
-    pub(crate) fn named(&self, edges: &[(&'static str, Run)]) -> Vec<(&'static str, Run)> {
-        let one = |(name, run): &(&'static str, Run)| (*name, run.changed(self.mirrored, |c| self.laid(c)));
+    /// The curve of an edge.
+    pub(crate) fn edge(&self, role: EdgeRole) -> Option<Curve> {
+        self.edges.iter().find(|e| e.0 == role).map(|e| e.1)
+    }
+
+    /// Edges as they lie and in counter-clockwise order, the only ones of their piece.
+    pub(crate) fn alone(&self, edges: &[(EdgeRole, Run)]) -> Vec<FlatEdge> {
+        let one = |(role, run): &(EdgeRole, Run)| {
+            FlatEdge::only(*role, run.changed(self.mirrored, |c| self.laid(c)))
+        };
         let mut all: Vec<_> = edges.iter().map(one).collect();
         if self.mirrored {
             all.reverse();
@@ -168,9 +191,9 @@ impl Side {
         all
     }
 
-    /// The same with the side's word.
-    pub(crate) fn own(&self, edges: &[(&'static str, Run)]) -> Vec<(String, Run)> {
-        self.named(edges).into_iter().map(|(name, run)| (format!("{name}_{}", self.word), run)).collect()
+    /// The same of a piece that has the other side's as well.
+    pub(crate) fn own(&self, edges: &[(EdgeRole, Run)]) -> Vec<FlatEdge> {
+        self.alone(edges).into_iter().map(|e| FlatEdge { hand: Some(self.hand), ..e }).collect()
     }
 }
 

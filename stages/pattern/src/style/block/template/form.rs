@@ -5,11 +5,12 @@
 //! little against the outline itself. They were set by the proportions of basic blocks (Aldrich,
 //! Metric Pattern Cutting, 2008) and not by the photos that are measured.
 
+use toile_core::artifact::EdgeRole;
+
 /// An edge of a form.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EdgeForm {
-    /// A tailor's word.
-    pub name: &'static str,
+    pub role: EdgeRole,
     /// Direction of its chord, degrees from across, counter-clockwise; and the spread.
     pub way: [f64; 2],
     /// How far it usually stands to the left of its chord (into the garment), in chord lengths; and
@@ -53,22 +54,22 @@ pub(crate) struct Form {
     pub edges: &'static [EdgeForm],
 }
 
-const fn edge(name: &'static str, way: [f64; 2], bow: [f64; 2], chord: [f64; 2]) -> EdgeForm {
-    EdgeForm { name, way, bow, chord, own_end: false }
+const fn edge(role: EdgeRole, way: [f64; 2], bow: [f64; 2], chord: [f64; 2]) -> EdgeForm {
+    EdgeForm { role, way, bow, chord, own_end: false }
 }
 
-const fn own(name: &'static str, way: [f64; 2], bow: [f64; 2], chord: [f64; 2]) -> EdgeForm {
-    EdgeForm { name, way, bow, chord, own_end: true }
+const fn own(role: EdgeRole, way: [f64; 2], bow: [f64; 2], chord: [f64; 2]) -> EdgeForm {
+    EdgeForm { role, way, bow, chord, own_end: true }
 }
 
 const NO_ARMHOLE: &str = "its sides run up to the shoulders without an armhole";
 const NO_SHOULDER: &str = "it has no shoulder beside the neck";
 const NO_ARMPIT: &str = "its sides run up without an armpit";
 
-const HEM: EdgeForm = edge("hem", [2.0, 10.0], [0.0, 0.06], [0.15, 1.2]);
-const SIDE: EdgeForm = edge("side", [92.0, 10.0], [0.0, 0.05], [0.3, 2.0]);
-const SHOULDER: EdgeForm = edge("shoulder", [158.0, 14.0], [0.0, 0.06], [0.06, 0.5]);
-const NECK: EdgeForm = edge("neck", [200.0, 30.0], [0.1, 0.15], [0.06, 0.6]);
+const HEM: EdgeForm = edge(EdgeRole::Hem, [2.0, 10.0], [0.0, 0.06], [0.15, 1.2]);
+const SIDE: EdgeForm = edge(EdgeRole::Side, [92.0, 10.0], [0.0, 0.05], [0.3, 2.0]);
+const SHOULDER: EdgeForm = edge(EdgeRole::Shoulder, [158.0, 14.0], [0.0, 0.06], [0.06, 0.5]);
+const NECK: EdgeForm = edge(EdgeRole::Neck, [200.0, 30.0], [0.1, 0.15], [0.06, 0.6]);
 
 /// No sleeves: vest, strap top, muscle tank.
 pub(crate) const VEST: Form = Form {
@@ -77,8 +78,8 @@ pub(crate) const VEST: Form = Form {
     edges: &[
         HEM,
         SIDE,
-        edge("armhole", [97.0, 20.0], [0.12, 0.15], [0.12, 0.7]),
-        edge("shoulder", [160.0, 20.0], [0.0, 0.06], [0.03, 0.4]),
+        edge(EdgeRole::Armhole, [97.0, 20.0], [0.12, 0.15], [0.12, 0.7]),
+        edge(EdgeRole::Shoulder, [160.0, 20.0], [0.0, 0.06], [0.03, 0.4]),
         NECK,
     ],
 };
@@ -93,10 +94,10 @@ pub(crate) const DRESS: Form = Form {
     ],
     edges: &[
         HEM,
-        edge("skirt", [100.0, 12.0], [0.0, 0.06], [0.3, 1.6]),
-        edge("side", [80.0, 12.0], [0.0, 0.05], [0.15, 0.8]),
-        edge("armhole", [100.0, 18.0], [0.15, 0.15], [0.12, 0.6]),
-        edge("shoulder", [160.0, 20.0], [0.0, 0.06], [0.02, 0.3]),
+        edge(EdgeRole::Skirt, [100.0, 12.0], [0.0, 0.06], [0.3, 1.6]),
+        edge(EdgeRole::Side, [80.0, 12.0], [0.0, 0.05], [0.15, 0.8]),
+        edge(EdgeRole::Armhole, [100.0, 18.0], [0.15, 0.15], [0.12, 0.6]),
+        edge(EdgeRole::Shoulder, [160.0, 20.0], [0.0, 0.06], [0.02, 0.3]),
         NECK,
     ],
 };
@@ -111,11 +112,11 @@ pub(crate) const SLEEVED: Form = Form {
     ],
     edges: &[
         HEM,
-        edge("skirt", [100.0, 10.0], [0.0, 0.06], [0.4, 1.6]),
-        edge("side", [80.0, 12.0], [0.0, 0.05], [0.15, 0.7]),
-        own("underarm", [-35.0, 35.0], [0.0, 0.08], [0.02, 1.3]),
-        own("cuff", [55.0, 30.0], [0.0, 0.06], [0.05, 0.45]),
-        edge("top", [145.0, 25.0], [0.0, 0.08], [0.1, 1.6]),
+        edge(EdgeRole::Skirt, [100.0, 10.0], [0.0, 0.06], [0.4, 1.6]),
+        edge(EdgeRole::Side, [80.0, 12.0], [0.0, 0.05], [0.15, 0.7]),
+        own(EdgeRole::Underarm, [-35.0, 35.0], [0.0, 0.08], [0.02, 1.3]),
+        own(EdgeRole::Cuff, [55.0, 30.0], [0.0, 0.06], [0.05, 0.45]),
+        edge(EdgeRole::Top, [145.0, 25.0], [0.0, 0.08], [0.1, 1.6]),
         SHOULDER,
         NECK,
     ],
@@ -128,9 +129,9 @@ pub(crate) const TEE: Form = Form {
     edges: &[
         HEM,
         SIDE,
-        own("underarm", [-35.0, 30.0], [0.0, 0.08], [0.02, 0.45]),
-        own("cuff", [55.0, 25.0], [0.0, 0.05], [0.12, 0.5]),
-        edge("top", [145.0, 20.0], [0.0, 0.06], [0.1, 0.7]),
+        own(EdgeRole::Underarm, [-35.0, 30.0], [0.0, 0.08], [0.02, 0.45]),
+        own(EdgeRole::Cuff, [55.0, 25.0], [0.0, 0.05], [0.12, 0.5]),
+        edge(EdgeRole::Top, [145.0, 20.0], [0.0, 0.06], [0.1, 0.7]),
         SHOULDER,
         NECK,
     ],
@@ -143,9 +144,9 @@ pub(crate) const LONG: Form = Form {
     edges: &[
         HEM,
         SIDE,
-        own("underarm", [-40.0, 35.0], [0.0, 0.08], [0.45, 1.6]),
-        own("cuff", [50.0, 35.0], [0.0, 0.06], [0.06, 0.35]),
-        edge("top", [135.0, 25.0], [0.0, 0.08], [0.5, 1.8]),
+        own(EdgeRole::Underarm, [-40.0, 35.0], [0.0, 0.08], [0.45, 1.6]),
+        own(EdgeRole::Cuff, [50.0, 35.0], [0.0, 0.06], [0.06, 0.35]),
+        edge(EdgeRole::Top, [135.0, 25.0], [0.0, 0.08], [0.5, 1.8]),
         SHOULDER,
         NECK,
     ],
@@ -162,9 +163,9 @@ pub(crate) const GROWN: Form = Form {
     ],
     edges: &[
         HEM,
-        edge("side", [82.0, 14.0], [0.08, 0.1], [0.3, 1.6]),
-        edge("cuff", [80.0, 25.0], [0.0, 0.05], [0.1, 0.5]),
-        edge("shoulder", [155.0, 14.0], [0.0, 0.06], [0.25, 0.9]),
+        edge(EdgeRole::Side, [82.0, 14.0], [0.08, 0.1], [0.3, 1.6]),
+        edge(EdgeRole::Cuff, [80.0, 25.0], [0.0, 0.05], [0.1, 0.5]),
+        edge(EdgeRole::Shoulder, [155.0, 14.0], [0.0, 0.06], [0.25, 0.9]),
         NECK,
     ],
 };
@@ -179,10 +180,10 @@ pub(crate) const SKIRT: Form = Form {
         Mark::Level(3, 0.2, "its waist is not even"),
     ],
     edges: &[
-        edge("hem", [5.0, 12.0], [0.0, 0.1], [0.2, 1.5]),
-        edge("side", [98.0, 12.0], [0.0, 0.06], [0.3, 2.5]),
-        edge("hip", [105.0, 15.0], [0.0, 0.06], [0.06, 0.8]),
-        edge("waist", [180.0, 8.0], [0.0, 0.08], [0.1, 0.9]),
+        edge(EdgeRole::Hem, [5.0, 12.0], [0.0, 0.1], [0.2, 1.5]),
+        edge(EdgeRole::Side, [98.0, 12.0], [0.0, 0.06], [0.3, 2.5]),
+        edge(EdgeRole::Hip, [105.0, 15.0], [0.0, 0.06], [0.06, 0.8]),
+        edge(EdgeRole::Waist, [180.0, 8.0], [0.0, 0.08], [0.1, 0.9]),
     ],
 };
 
@@ -191,11 +192,11 @@ pub(crate) const TROUSERS: Form = Form {
     word: "a pair of trousers",
     marks: &[Mark::Below(0, -50.0, "it has no legs"), Mark::Corner(4, 40.0, "it has no waist")],
     edges: &[
-        own("inseam", [-86.0, 12.0], [0.0, 0.05], [0.1, 2.5]),
-        own("hem", [5.0, 12.0], [0.0, 0.06], [0.08, 0.6]),
-        edge("outseam", [95.0, 10.0], [0.0, 0.06], [0.2, 3.5]),
-        edge("hip", [103.0, 15.0], [0.0, 0.08], [0.06, 0.8]),
-        edge("waist", [180.0, 8.0], [0.0, 0.06], [0.12, 0.7]),
+        own(EdgeRole::Inseam, [-86.0, 12.0], [0.0, 0.05], [0.1, 2.5]),
+        own(EdgeRole::Hem, [5.0, 12.0], [0.0, 0.06], [0.08, 0.6]),
+        edge(EdgeRole::Outseam, [95.0, 10.0], [0.0, 0.06], [0.2, 3.5]),
+        edge(EdgeRole::Hip, [103.0, 15.0], [0.0, 0.08], [0.06, 0.8]),
+        edge(EdgeRole::Waist, [180.0, 8.0], [0.0, 0.06], [0.12, 0.7]),
     ],
 };
 
@@ -208,12 +209,12 @@ pub(crate) const ONEPIECE: Form = Form {
         Mark::Below(3, 65.0, NO_ARMPIT),
     ],
     edges: &[
-        own("inseam", [-78.0, 20.0], [0.0, 0.06], [0.04, 1.4]),
-        own("hem", [10.0, 20.0], [0.0, 0.06], [0.06, 0.6]),
-        edge("side", [92.0, 10.0], [0.0, 0.06], [0.4, 2.6]),
-        own("underarm", [-38.0, 35.0], [0.0, 0.08], [0.02, 1.3]),
-        own("cuff", [55.0, 30.0], [0.0, 0.06], [0.05, 0.5]),
-        edge("top", [140.0, 25.0], [0.0, 0.08], [0.1, 1.6]),
+        own(EdgeRole::Inseam, [-78.0, 20.0], [0.0, 0.06], [0.04, 1.4]),
+        own(EdgeRole::Hem, [10.0, 20.0], [0.0, 0.06], [0.06, 0.6]),
+        edge(EdgeRole::Side, [92.0, 10.0], [0.0, 0.06], [0.4, 2.6]),
+        own(EdgeRole::Underarm, [-38.0, 35.0], [0.0, 0.08], [0.02, 1.3]),
+        own(EdgeRole::Cuff, [55.0, 30.0], [0.0, 0.06], [0.05, 0.5]),
+        edge(EdgeRole::Top, [140.0, 25.0], [0.0, 0.08], [0.1, 1.6]),
         SHOULDER,
         NECK,
     ],
@@ -228,11 +229,11 @@ pub(crate) const ROMPER: Form = Form {
         Mark::Corner(4, 25.0, NO_SHOULDER),
     ],
     edges: &[
-        own("inseam", [-78.0, 20.0], [0.0, 0.06], [0.04, 1.4]),
-        own("hem", [10.0, 20.0], [0.0, 0.06], [0.06, 0.6]),
-        edge("side", [92.0, 10.0], [0.0, 0.06], [0.4, 2.6]),
-        edge("armhole", [97.0, 20.0], [0.12, 0.15], [0.12, 0.6]),
-        edge("shoulder", [160.0, 20.0], [0.0, 0.06], [0.03, 0.4]),
+        own(EdgeRole::Inseam, [-78.0, 20.0], [0.0, 0.06], [0.04, 1.4]),
+        own(EdgeRole::Hem, [10.0, 20.0], [0.0, 0.06], [0.06, 0.6]),
+        edge(EdgeRole::Side, [92.0, 10.0], [0.0, 0.06], [0.4, 2.6]),
+        edge(EdgeRole::Armhole, [97.0, 20.0], [0.12, 0.15], [0.12, 0.6]),
+        edge(EdgeRole::Shoulder, [160.0, 20.0], [0.0, 0.06], [0.03, 0.4]),
         NECK,
     ],
 };
@@ -240,21 +241,31 @@ pub(crate) const ROMPER: Form = Form {
 impl Form {
     /// Whether it consists of two legs.
     pub(crate) fn has_legs(&self) -> bool {
-        self.begins_at_fork() && self.edges.iter().any(|e| e.name == "waist")
+        self.begins_at_fork() && self.ends_at(EdgeRole::Waist)
     }
 
     /// Whether its halves meet in a fork below: it has legs, and nothing else or a top.
     pub(crate) fn begins_at_fork(&self) -> bool {
-        self.edges.first().is_some_and(|e| e.name == "inseam")
+        self.edges.first().is_some_and(|e| e.role == EdgeRole::Inseam)
+    }
+
+    /// Whether its last edge is that one: it hangs from the neck, or from the waist.
+    pub(crate) fn ends_at(&self, role: EdgeRole) -> bool {
+        self.edges.last().is_some_and(|e| e.role == role)
+    }
+
+    /// The number of an edge.
+    pub(crate) fn at(&self, role: EdgeRole) -> Option<usize> {
+        self.edges.iter().position(|e| e.role == role)
     }
 
     /// The number of the edge that starts at the armpit; none where nothing tells where that is.
     pub(crate) fn armpit(&self) -> Option<usize> {
-        self.edges.iter().position(|e| e.name == "underarm" || e.name == "armhole")
+        self.underarm().or_else(|| self.at(EdgeRole::Armhole))
     }
 
     /// The number of its underarm edge: it has set-in sleeves.
     pub(crate) fn underarm(&self) -> Option<usize> {
-        self.edges.iter().position(|e| e.name == "underarm")
+        self.at(EdgeRole::Underarm)
     }
 }

@@ -12,7 +12,7 @@ use crate::style::block::template::bow::Bow;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
 use nalgebra::Rotation2;
-use toile_core::artifact::Point2;
+use toile_core::artifact::{EdgeRole, Point2};
 
 /// Trousers are so many times as wide at the fork as at the seat; what is wider there is cloth of
 /// the fork, which lies open between spread legs.
@@ -23,8 +23,9 @@ pub(crate) fn stood(fit: &mut Fit, form: &Form) {
     if !form.has_legs() {
         return;
     }
-    let at = |name: &str| form.edges.iter().position(|e| e.name == name);
-    let (Some(inseam), Some(hem), Some(outseam)) = (at("inseam"), at("hem"), at("outseam")) else { return };
+    let [inseam, hem, outseam] =
+        [EdgeRole::Inseam, EdgeRole::Hem, EdgeRole::Outseam].map(|role| form.at(role));
+    let (Some(inseam), Some(hem), Some(outseam)) = (inseam, hem, outseam) else { return };
     for side in &mut fit.sides {
         let (fork, waist) = (side[inseam].a, side[side.len() - 1].b);
         let seat = fork.y + SEAT * (waist.y - fork.y);
