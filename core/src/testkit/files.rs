@@ -74,8 +74,9 @@ fn pieces() -> String {
 
 /// Lays the files that an example names into a folder: pictures (`empty.jpg` shows the ground
 /// without the garment), a body as OBJ (a garment where its name says so), a GarmentCode pattern
-/// under its usual ending, a DXF and an SVG of pieces, a draft with its measurements, and, of other kinds, whatever a writer of
-/// the registry makes of the suite's garment under that extension, with all that goes with it.
+/// under its usual ending, a DXF and an SVG of pieces, a draft with its measurements, and, of other
+/// kinds, whatever a writer of the registry makes of the suite's garment under that extension, with
+/// all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
 pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
