@@ -1,10 +1,11 @@
 //! How much of a garment is still in its place on the body, whatever holds up the part that slid
 //! off.
 //!
-//! Method: for each connected piece of cloth, the height of its upper edge at the start, but no
-//! higher than the body under it, minus its height at the end. Of a piece that starts upright the
-//! mean downward displacement of its vertices counts too, so that a skirt that slid on one side
-//! only has sunk. The distance sunk over the piece's size (the root of its flat area) is the share
+//! Method: for each connected piece of cloth that starts upright, the mean downward displacement of
+//! its vertices, less the way from its upper edge down to the body under it: a skirt that slid on
+//! one side only has sunk by half, a hood that falls onto the back hardly. Of cloth that starts
+//! lying, the height of its upper edge at the start, but no higher than the body under it, minus
+//! its height at the end. The distance sunk over the piece's size (the root of its flat area) is the share
 //! that has left its place. So cloth that starts above a ball and ends on it has sunk by 0, a skirt
 //! that slides 5 cm onto the hips by some hundredths, a skirt that ends around the feet by 1. Cost:
 //! some hundred distances a piece. Limit: a body thinner than a ninth of the piece is not seen
@@ -55,14 +56,13 @@ pub fn on_body(garment: &Garment, end: &[Point3], scheme: &dyn Collide, gravity:
         let highest = top(&garment.positions);
         let from = highest.min(under.unwrap_or(f64::INFINITY));
         let lowest = start.iter().map(|p| p.dot(&up)).fold(f64::INFINITY, f64::min);
-        let mean = if highest - lowest > UPRIGHT * size {
+        let sunk = if highest - lowest > UPRIGHT * size {
             let down = piece.vertices.iter().map(|&v| (garment.positions[v] - end[v]).dot(&up));
             down.sum::<f64>() / piece.vertices.len() as f64 - (highest - from)
         } else {
-            0.0
+            from - top(end)
         };
-        let sunk = (from - top(end)).max(mean).max(0.0);
-        let share = (1.0 - sunk / size).clamp(0.0, 1.0);
+        let share = (1.0 - sunk.max(0.0) / size).clamp(0.0, 1.0);
         piece.vertices.iter().for_each(|&v| shares[v] = share);
     }
     let panel = |own: &std::ops::Range<usize>| shares[own.clone()].iter().copied().fold(1.0, f64::min);

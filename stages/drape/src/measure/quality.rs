@@ -30,7 +30,7 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// that stand off, an uneven hem, a photo that is drawn out.
 #[stage(
     role = Writer,
-    version = 8,
+    version = 9,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"
@@ -58,10 +58,11 @@ pub struct Measure {
     /// from `max_strain` on a warning names the panel.
     #[param(default = 0.25, min = 0.0, max = 10.0)]
     max_tight: f64,
-    /// Least share of every panel that must still be in its place on the body: 1 less the way that
-    /// the upper edge of all that it is sewn to has sunk, from where it started or from the top of
-    /// the body under it, as a share of the height of its tallest piece.
-    #[param(default = 0.5, min = 0.0, max = 1.0)]
+    /// Least share of every panel that must still be in its place on the body: 1 less the mean way
+    /// down of all that it is sewn to (of cloth that starts lying, of its upper edge), from where
+    /// it started or from the top of the body under it, as a share of the height of its tallest
+    /// piece.
+    #[param(default = 0.7, min = 0.0, max = 1.0)]
     least_on_body: f64,
     /// Most pairs of a triangle of the garment and one of the body that cross.
     #[param(default = 0, min = 0, max = 1_000_000, unit = "pairs")]
