@@ -1,15 +1,15 @@
 //! How much of a garment is still in its place on the body, whatever holds up the part that slid
 //! off.
 //!
-//! Method: for each connected piece of cloth that starts upright, the mean downward displacement of
-//! its vertices, less the way from its upper edge down to the body under it: a skirt that slid on
-//! one side only has sunk by half, a hood that falls onto the back hardly. Of cloth that starts
+//! Method: for each connected piece of cloth that starts upright, the mean downward displacement
+//! of its vertices, less the way from its upper edge down to the body under it: a skirt that slid
+//! on one side only has sunk by half, a hood that falls onto the back hardly. Of cloth that starts
 //! lying, the height of its upper edge at the start, but no higher than the body under it, minus
-//! its height at the end. The distance sunk over the piece's size (the root of its flat area) is the share
-//! that has left its place. So cloth that starts above a ball and ends on it has sunk by 0, a skirt
-//! that slides 5 cm onto the hips by some hundredths, a skirt that ends around the feet by 1. Cost:
-//! some hundred distances a piece. Limit: a body thinner than a ninth of the piece is not seen
-//! under it; then its start alone counts.
+//! its height at the end. The distance sunk over the piece's size (the root of its flat area) is
+//! the share that has left its place. So cloth that starts above a ball and ends on it has sunk by
+//! 0, a skirt that slides 5 cm onto the hips by some hundredths, a skirt that ends around the feet
+//! by 1. Cost: some hundred distances a piece. Limit: a body thinner than a ninth of the piece is
+//! not seen under it; then its start alone counts.
 
 use super::SchemeSurface;
 use super::pieces::pieces;
