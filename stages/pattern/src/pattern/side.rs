@@ -5,6 +5,7 @@
 //! microseconds per curve. Limits: sides are split by the angle at which curves meet, not within a
 //! curve.
 
+use crate::mesh::crossing::first_crossing;
 use toile_core::prelude::*;
 
 /// Outlines are split where they turn by more than this, degrees.
@@ -191,6 +192,29 @@ pub(super) fn points(sides: &[Side]) -> Vec<Point2> {
         points
     };
     sides.iter().flat_map(without_end).collect()
+}
+
+/// What an outline of a piece must not be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum NotSimple {
+    /// It encloses less than the least area.
+    NoArea,
+    /// It crosses itself there, as it was drawn, y up, metres.
+    Crosses(Point2),
+}
+
+/// Errors: an outline of less area than `least`, square metres, or one that crosses itself. `turn`
+/// is the cosine and the sine of the angle by which it was turned.
+pub(super) fn check_simple(sides: &[Side], least: f64, turn: Vector2) -> Result<(), NotSimple> {
+    let points = points(sides);
+    let n = points.len() as u32;
+    if n < 3 || polygon_area(&points).abs() < least {
+        return Err(NotSimple::NoArea);
+    }
+    let segments: Vec<[u32; 2]> = (0..n).map(|i| [i, (i + 1) % n]).collect();
+    let Some([_, other]) = first_crossing(&points, &segments) else { return Ok(()) };
+    let p = points[other];
+    Err(NotSimple::Crosses(Point2::new(turn.x * p.x + turn.y * p.y, turn.x * p.y - turn.y * p.x)))
 }
 
 /// The loop turned counter-clockwise.

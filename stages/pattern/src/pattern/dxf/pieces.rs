@@ -9,13 +9,15 @@
 
 use super::super::chain::{HAIR, JOINT, chained};
 use super::super::marks::{hole, notched};
-use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
+use super::super::side::{NotSimple, Side, check_simple, counter_clockwise, pattern_loop, split};
 use super::super::unfold::{Fold, distinct, image_word, open_ring};
 use super::damage::DxfDamage;
 use super::entities::{Block, Stroke};
-use crate::mesh::crossing::first_crossing;
 use toile_core::Remarks;
 use toile_core::prelude::*;
+
+/// No smaller piece is one, square metres.
+const LEAST: f64 = 1e-7;
 
 /// The piece of a block; `unit` is the length of the file's unit in metres.
 pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Remarks) -> Result<Piece, DxfDamage> {
@@ -243,17 +245,12 @@ impl NamedBlock<'_> {
     }
 
     fn simple(&self, sides: &[Side], turn: [f64; 2]) -> Result<(), DxfDamage> {
-        let points = points(sides);
-        let n = points.len() as u32;
-        if n < 3 || polygon_area(&points).abs() < 1e-7 {
-            return Err(self.fault("it encloses no area".into()));
-        }
-        let segments: Vec<[u32; 2]> = (0..n).map(|i| [i, (i + 1) % n]).collect();
-        let Some([_, other]) = first_crossing(&points, &segments) else { return Ok(()) };
-        let p = points[other];
-        // Back to how the file has it.
-        let (x, y) = (turn[0] * p.x + turn[1] * p.y, turn[0] * p.y - turn[1] * p.x);
-        let (piece, line) = (self.name.to_owned(), self.block.line);
-        Err(DxfDamage::Crosses { piece, line, x: x / self.unit, y: y / self.unit })
+        check_simple(sides, LEAST, turn.into()).map_err(|e| match e {
+            NotSimple::NoArea => self.fault("it encloses no area".into()),
+            NotSimple::Crosses(p) => {
+                let (piece, line) = (self.name.to_owned(), self.block.line);
+                DxfDamage::Crosses { piece, line, x: p.x / self.unit, y: p.y / self.unit }
+            }
+        })
     }
 }

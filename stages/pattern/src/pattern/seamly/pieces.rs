@@ -6,13 +6,12 @@
 
 use super::super::copies::{MOST_COPIES, copies};
 use super::super::marks::{hole, notched};
-use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
+use super::super::side::{NotSimple, Side, check_simple, counter_clockwise, pattern_loop, points, split};
 use super::super::unfold::{Fold, image_word};
 use super::allowance;
 use super::damage::DraftDamage;
 use super::fold::along_grain;
 use super::strokes::{label, side};
-use crate::mesh::crossing::first_crossing;
 use std::collections::BTreeSet;
 use toile_core::Remarks;
 use toile_core::prelude::*;
@@ -161,18 +160,13 @@ impl DraftPlace<'_> {
     }
 
     fn simple(&self, sides: &[Side], turn: Vector2) -> Result<(), DraftDamage> {
-        let points = points(sides);
-        let n = points.len() as u32;
-        if n < 3 || polygon_area(&points).abs() < LEAST {
-            return Err(self.fault("it encloses no area"));
-        }
-        let segments: Vec<[u32; 2]> = (0..n).map(|i| [i, (i + 1) % n]).collect();
-        let Some([_, other]) = first_crossing(&points, &segments) else { return Ok(()) };
-        let p = points[other];
-        // Back to the draft, whose y runs down.
-        let (x, y) = (turn.x * p.x + turn.y * p.y, turn.x * p.y - turn.y * p.x);
-        let place = self.piece.place.clone();
-        Err(DraftDamage::Crosses { place, x: x / self.metres, y: -y / self.metres })
+        check_simple(sides, LEAST, turn).map_err(|e| match e {
+            NotSimple::NoArea => self.fault("it encloses no area"),
+            NotSimple::Crosses(p) => {
+                let place = self.piece.place.clone();
+                DraftDamage::Crosses { place, x: p.x / self.metres, y: -p.y / self.metres }
+            }
+        })
     }
 }
 

@@ -10,7 +10,7 @@
 use super::super::chain::{JOINT, chained};
 use super::super::copies::{MOST_COPIES, copies};
 use super::super::marks::{hole, notched};
-use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
+use super::super::side::{NotSimple, Side, check_simple, counter_clockwise, pattern_loop, points, split};
 use super::super::unfold::{Fold, distinct, image_word, open_ring};
 use super::damage::{SvgDamage, SvgPlace};
 use super::drawing::{Drawing, DrawnShape, Name};
@@ -19,7 +19,6 @@ use super::outlined::Outlined;
 use super::path::Line;
 use super::role::{Role, cut};
 use super::source::place;
-use crate::mesh::crossing::first_crossing;
 use std::collections::BTreeMap;
 use toile_core::Remarks;
 use toile_core::prelude::*;
@@ -495,18 +494,13 @@ impl Drawn<'_> {
     }
 
     fn simple(&self, sides: &[Side], turn: Vector2) -> Result<(), SvgDamage> {
-        let points = points(sides);
-        let n = points.len() as u32;
-        if n < 3 || polygon_area(&points).abs() < LEAST {
-            return Err(self.fault("it encloses no area"));
-        }
-        let segments: Vec<[u32; 2]> = (0..n).map(|i| [i, (i + 1) % n]).collect();
-        let Some([_, other]) = first_crossing(&points, &segments) else { return Ok(()) };
-        let p = points[other];
-        // Back to the page.
-        let (x, y) = (turn.x * p.x + turn.y * p.y, turn.x * p.y - turn.y * p.x);
-        let (piece, place) = (self.name.to_owned(), self.place.clone());
-        Err(SvgDamage::Crosses { piece, place, x: x * 1e3, y: -y * 1e3 })
+        check_simple(sides, LEAST, turn).map_err(|e| match e {
+            NotSimple::NoArea => self.fault("it encloses no area"),
+            NotSimple::Crosses(p) => {
+                let (piece, place) = (self.name.to_owned(), self.place.clone());
+                SvgDamage::Crosses { piece, place, x: p.x * 1e3, y: -p.y * 1e3 }
+            }
+        })
     }
 }
 
