@@ -32,6 +32,19 @@ fn a_prepared_scene_lies_as_its_author_laid_it() {
 }
 
 #[test]
+fn a_prepared_scene_is_solved_to_its_last_vertex() {
+    for name in ["scene.ron", "skirt.ron"] {
+        for (param, wanted) in [("speed", "0.001"), ("non_static", "0.0"), ("proof", "Short")] {
+            assert_eq!(value(name, "StaticEquilibrium", param, &[]), wanted, "{name}");
+        }
+    }
+    assert_eq!(value("skirt.ron", "Settle", "non_static", &[]), "0.0");
+    assert_eq!(value("photo.ron", "StaticEquilibrium", "non_static", &[]), "0.015");
+    let set = [("stages.StaticEquilibrium.speed", "0.01")];
+    assert_eq!(value("scene.ron", "StaticEquilibrium", "speed", &set), "0.01");
+}
+
+#[test]
 fn a_second_stage_of_a_kind_takes_the_parameters_of_the_first() {
     let set = [("stages.StaticEquilibrium.speed", "0.002"), ("stages.BvhCollider.friction", "0.4")];
     assert_eq!(value("photo.ron", "Settle", "speed", &set), "0.002");

@@ -1,21 +1,26 @@
-//! Rule `by-place`: whether a garment is sewn or goes on from where it is follows from the stages
-//! before it.
+//! Rule `by-place`: whether a garment is sewn or goes on from where it is, and what counts as rest,
+//! follow from the stages before it.
 //!
 //! Fact: which stage made the garment that `StaticEquilibrium` takes, past those that only move it
 //! or cut its mesh. A placement of a pattern puts its pieces around the body, far apart and with
 //! others in between, so cloth passes through cloth while its seams close. Between two panels of an
 //! outline nothing lies, and sewn plainly they end in the same folds from a start that is moved by
 //! a millimetre. Behind a draper the garment hangs already: it continues from there, with the same
-//! settings. For a prepared scene nothing is decided: its author sets the parameters.
+//! settings. A prepared scene lies as its author laid it, and is solved to its last vertex: its
+//! result is held against others, and it need not lie in the folds of a figure's skin, where some
+//! vertices never come to rest.
 
 use toile_core::Known;
-use toile_core::artifact::{ArtifactType, Garment, Kind, Pattern};
+use toile_core::artifact::{ArtifactType, Garment, Kind, Pattern, Phases};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 use toile_core::{ByPlace, Feed, Node, Role};
 
 /// 95 % of the surface lie within so many metres of where another way of sewing brings it: friction
 /// has many states of rest.
 const APART: f64 = 0.04;
+
+/// Rest to the last vertex.
+const TO_THE_LAST: [(&str, &str); 3] = [("speed", "0.001"), ("non_static", "0.0"), ("proof", "Short")];
 
 /// What the garment of a stage comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +29,8 @@ enum GarmentOrigin {
     Placed(usize),
     /// A draper.
     Draped(usize),
+    /// The reader of a prepared scene.
+    Scene,
 }
 
 /// Whence the garment of stage `index` comes.
@@ -34,7 +41,9 @@ fn origin(nodes: &[Node], index: usize) -> Option<GarmentOrigin> {
     let Feed::Node { node: before, .. } = *feed else { return None };
     let maker = nodes.get(before)?;
     let takes = |kind: Kind| maker.card.inputs.iter().any(|p| p.kind == kind && !p.original);
+    let makes = |kind: Kind| maker.card.outputs.iter().any(|p| p.kind == kind);
     match maker.card.role {
+        Role::Reader if makes(Phases::KIND) => Some(GarmentOrigin::Scene),
         Role::Draper => Some(GarmentOrigin::Draped(before)),
         Role::Placement if takes(Garment::KIND) => origin(nodes, before),
         Role::Placement if takes(Pattern::KIND) => Some(GarmentOrigin::Placed(before)),
@@ -54,6 +63,10 @@ pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
             set.push(("sew_through", "false".to_owned()));
             ByPlace { like: Some(k).filter(|_| is_alike), set }
         }
+        Some(GarmentOrigin::Scene) => ByPlace {
+            like: None,
+            set: TO_THE_LAST.iter().map(|&(name, value)| (name, value.to_owned())).collect(),
+        },
         None => ByPlace::default(),
     }
 }
@@ -69,6 +82,7 @@ pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
             "sew_through",
         ),
         GarmentOrigin::Draped(k) => (k, "goes on from where the garment hangs", "has draped it", "from_here"),
+        GarmentOrigin::Scene => return None,
     };
     let maker = known.nodes.get(from)?;
     (!is_written(name)).then(|| Decision {

@@ -60,7 +60,9 @@ pub enum ProofSteps {
 /// of rest; a scene with wind in its last phase is refused, for wind has no potential: take
 /// `ImplicitEuler`.
 ///
-/// Behind another `StaticEquilibrium` it takes that one's parameters where it is given none.
+/// Behind another `StaticEquilibrium` it takes that one's parameters where it is given none. A
+/// prepared scene (`Scene`) is solved to its last vertex: left out, `speed` is 1 mm/s behind it,
+/// `non_static` 0 and `proof` `Short`.
 #[stage(
     role = Draper,
     version = 23,

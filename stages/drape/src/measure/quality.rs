@@ -62,7 +62,7 @@ pub struct Measure {
     /// down of all that it is sewn to (of cloth that starts lying, of its upper edge), from where
     /// it started or from the top of the body under it, as a share of the height of its tallest
     /// piece.
-    #[param(default = 0.7, min = 0.0, max = 1.0)]
+    #[param(default = 0.8, min = 0.0, max = 1.0)]
     least_on_body: f64,
     /// Most pairs of a triangle of the garment and one of the body that cross.
     #[param(default = 0, min = 0, max = 1_000_000, unit = "pairs")]

@@ -266,7 +266,7 @@ fn a_pipeline_without_knobs_gets_its_resolutions_and_stages() {
     let scene = source(FILE, &registry).load(&[]).unwrap();
     assert_eq!(
         default_knobs(&scene, &registry).iter().map(KnobSpec::key).collect::<Vec<_>>(),
-        ["solver", "StaticEquilibrium.speed", "StaticEquilibrium.non_static"]
+        ["solver", "StaticEquilibrium.speed"]
     );
 }
 
