@@ -20,8 +20,10 @@ use toile_stages::render::{ModelScene, View, garment_model};
 const HEIGHT: u32 = 300;
 /// JPEG quality of the pictures.
 const QUALITY: u8 = 82;
-/// The page; autoescaped, since its name ends in `.html`.
-const TEMPLATE: (&str, &str) = ("trade.html", include_str!("page.html"));
+/// The name of the page's template: autoescaped, since it ends in `.html`.
+const TEMPLATE_NAME: &str = "trade.html";
+/// The page's template.
+const TEMPLATE: &str = include_str!("page.html");
 
 /// Front and side of a run's garment, as files of the folder.
 pub(crate) fn pictures(key: &str, ran: &Ran) -> Vec<OutputFile> {
@@ -93,8 +95,8 @@ struct SettingEntry {
 
 fn html(trade: &Trade, drawing: &str, folder: &Path) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
-    environment.add_template(TEMPLATE.0, TEMPLATE.1)?;
-    environment.get_template(TEMPLATE.0)?.render(Value::from(Serde(page(trade, drawing, folder))))
+    environment.add_template(TEMPLATE_NAME, TEMPLATE)?;
+    environment.get_template(TEMPLATE_NAME)?.render(Value::from(Serde(page(trade, drawing, folder))))
 }
 
 fn page(trade: &Trade, drawing: &str, folder: &Path) -> StudyPage {

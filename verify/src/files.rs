@@ -15,7 +15,7 @@ use crate::judge::judge;
 use crate::limits::CheckLimits;
 use crate::subject::{Subject, WearerBody};
 use std::path::{Path, PathBuf};
-use toile_body::body_of_mesh;
+use toile_body::{HUMAN_HEIGHTS, body_of_mesh};
 use toile_core::artifact::{Body, Pattern, Point3};
 use toile_core::prelude::{Context, ErrorCode, StageError};
 use toile_geometry::obj;
@@ -25,9 +25,6 @@ use toile_pattern::pattern::{DxfPattern, GarmentCode, SeamlyPattern, SvgPattern}
 
 /// The files' names that a run's folder is searched for first.
 const FIRST: [&str; 2] = ["garment.glb", "result.obj"];
-
-/// Heights of people, metres.
-const HEIGHTS: (f64, f64) = (0.5, 2.5);
 
 /// What is requested.
 #[derive(Debug, Clone, Default)]
@@ -218,7 +215,7 @@ pub fn subject(
 fn body_unit(positions: &[Point3], triangles: &[[u32; 3]], file: &str) -> Result<f64, StageError> {
     let y = || triangles.iter().flatten().map(|v| positions[*v as usize].y);
     let tall = y().fold(f64::NEG_INFINITY, f64::max) - y().fold(f64::INFINITY, f64::min);
-    let fits = |u: &&f64| (HEIGHTS.0..=HEIGHTS.1).contains(&(tall * **u));
+    let fits = |u: &&f64| HUMAN_HEIGHTS.contains(&(tall * **u));
     [1.0, 0.01, 0.001, 0.1].iter().find(fits).copied().ok_or_else(|| {
         let what = format!("\"{file}\": no unit makes its height of {tall:.3} that of a person");
         unreadable(what).hint("the body must stand upright, y up; people are 0.5 to 2.5 m tall")

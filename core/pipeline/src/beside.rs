@@ -10,13 +10,15 @@ use std::io;
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile};
 
-/// What the names of such files begin and end with.
-const AFFIXES: (&str, &str) = (".toile-", ".tmp");
+/// What the names of such files begin with.
+const PREFIX: &str = ".toile-";
+/// What the names of such files end with.
+const SUFFIX: &str = ".tmp";
 
 /// A new file in a folder, locked.
 pub(crate) fn new_in(folder: &Path) -> io::Result<NamedTempFile> {
     loop {
-        let file = Builder::new().prefix(AFFIXES.0).suffix(AFFIXES.1).tempfile_in(folder)?;
+        let file = Builder::new().prefix(PREFIX).suffix(SUFFIX).tempfile_in(folder)?;
         let locked = file.as_file().lock().is_ok();
         // Between the two calls another program may have taken it for one that was left.
         if !locked || file.path().exists() {
@@ -27,7 +29,7 @@ pub(crate) fn new_in(folder: &Path) -> io::Result<NamedTempFile> {
 
 /// Whether a file of that name was on its way.
 pub(crate) fn is_on_its_way(name: &str) -> bool {
-    name.starts_with(AFFIXES.0) && name.ends_with(AFFIXES.1)
+    name.starts_with(PREFIX) && name.ends_with(SUFFIX)
 }
 
 /// Takes away what programs that were killed have left in a folder.

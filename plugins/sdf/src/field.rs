@@ -21,8 +21,10 @@ use toile_core::{Context, Length, StageError};
 const MAX_NODES: f64 = 4e7;
 /// Cells around the skin with exact distances.
 const BAND: f64 = 2.0;
-/// Cells around the body's box, and at least so many metres: no solver looks farther for contacts.
-const ROOM: (f64, f64) = (3.0, 0.05);
+/// Cells around the body's box.
+const ROOM_CELLS: f64 = 3.0;
+/// The least room around the body's box, metres: no solver looks farther for contacts.
+const LEAST_ROOM: f64 = 0.05;
 /// Slices whose bands are made before the stop flag is looked at.
 const SLICES: usize = 4;
 /// Cells from the skin within which the closest point is requested.
@@ -70,7 +72,7 @@ impl DistanceField {
     fn around(body: &Body, cell: f64, skin: Skin) -> Result<Self, StageError> {
         let (mut low, mut high) = (body.positions[0], body.positions[0]);
         body.positions.iter().for_each(|p| (low, high) = (low.inf(p), high.sup(p)));
-        let room = Vector3::repeat((ROOM.0 * cell).max(ROOM.1));
+        let room = Vector3::repeat((ROOM_CELLS * cell).max(LEAST_ROOM));
         let span = (high - low) + 2.0 * room;
         let counts = span.map(|s| (s / cell).ceil() + 1.0);
         let nodes = counts.product();

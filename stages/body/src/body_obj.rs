@@ -8,12 +8,13 @@ use crate::measures::estimate::estimate;
 use crate::skin::topology::SkinMesh;
 use crate::skin::topology::{MeshTopology, VertexSets};
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use toile_core::prelude::*;
 use toile_geometry::obj;
 use toile_geometry::obj::OBJ_HINT;
 
 /// Heights of people, metres.
-const HEIGHTS: (f64, f64) = (0.5, 2.5);
+pub const HUMAN_HEIGHTS: RangeInclusive<f64> = 0.5..=2.5;
 
 /// A body whose feet and middle are nearer to the origin than this in every direction stays where
 /// it is, metres.
@@ -177,12 +178,16 @@ impl BodyObj {
 
     /// Metres of the file's unit.
     fn unit(&self, tall: f64) -> Result<f64, StageError> {
-        let fits = |u: &f64| tall * u >= HEIGHTS.0 && tall * u <= HEIGHTS.1;
+        let fits = |u: &f64| HUMAN_HEIGHTS.contains(&(tall * u));
         let units = self.units.metres().map_or_else(|| vec![1.0, 0.01, 0.001, 0.1], |u| vec![u]);
         units.iter().copied().find(|u| fits(u)).ok_or_else(|| {
             let as_said = units.first().map_or(tall, |u| tall * u);
             StageError::invalid(format!("the body would be {as_said:.3} m tall"))
-                .hint(format!("people are {} to {} m tall; check `units` and `up`", HEIGHTS.0, HEIGHTS.1))
+                .hint(format!(
+                    "people are {} to {} m tall; check `units` and `up`",
+                    HUMAN_HEIGHTS.start(),
+                    HUMAN_HEIGHTS.end()
+                ))
                 .at("units")
         })
     }

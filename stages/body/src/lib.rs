@@ -12,7 +12,7 @@ mod shape;
 mod skin;
 mod wearer;
 
-pub use body_obj::{BodyObj, Units, Up, body_of_mesh};
+pub use body_obj::{BodyObj, HUMAN_HEIGHTS, Units, Up, body_of_mesh};
 pub use depth::DepthMap;
 pub use limbs::bridge::bridged;
 pub use limbs::swing::Swing;

@@ -7,8 +7,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A prediction is right where it differs from the measured value by at most this share of that
 /// value.
 const RIGHT: f64 = 0.3;
-/// Times below this, seconds, and memory below this, bytes, are noise of timer and cache.
-const TELLING: (f64, f64) = (1e-3, 1e6);
+/// Times below this, seconds, are noise of timer and cache.
+const TELLING_TIME: f64 = 1e-3;
+/// Memory below this, bytes, is noise of timer and cache.
+const TELLING_MEMORY: f64 = 1e6;
 
 /// Whether a prediction is near enough to the measured value.
 pub(super) fn is_right(prediction: f64, fact: f64) -> bool {
@@ -95,7 +97,7 @@ pub fn check(records: &[CostRecord], names: &[String], figure: CostFigure) -> Pr
 fn judge(check: &mut PredictionCheck, pipeline: &str, left_out: &[CostRecord], costs: &Costs) {
     let mut by_stage: BTreeMap<&str, Vec<&CostRecord>> = BTreeMap::new();
     left_out.iter().for_each(|r| by_stage.entry(&r.stage).or_default().push(r));
-    let least = if check.figure.is_time() { TELLING.0 } else { TELLING.1 };
+    let least = if check.figure.is_time() { TELLING_TIME } else { TELLING_MEMORY };
     for (stage, runs) in by_stage {
         let (mut tally, mut ratios, mut facts) = (Tally::default(), Vec::new(), Vec::new());
         for run in runs {

@@ -13,9 +13,10 @@ const NORMAL_90: f64 = 1.2816;
 const LEAST_SPREAD: f64 = 0.05;
 /// Growth of the spread for each power of e beyond what was measured.
 const BEYOND: f64 = 0.25;
-/// Prior for how far the same stage differs from pipeline to pipeline, as a logarithm, and the
-/// number of pipelines that this prior counts for.
-const BETWEEN: (f64, f64) = (0.15, 3.0);
+/// Prior for how far the same stage differs from pipeline to pipeline, as a logarithm.
+const PRIOR_SPREAD: f64 = 0.15;
+/// The number of pipelines that [`PRIOR_SPREAD`] counts for.
+const PRIOR_PIPELINES: f64 = 3.0;
 /// A single outlier among the errors counts as no more than this.
 const CAP: f64 = 1.5;
 
@@ -94,8 +95,8 @@ fn student(free: f64) -> f64 {
     NORMAL_90 * (1.0 + 0.9 / free + 0.5 / (free * free))
 }
 
-/// How far pipelines lie from the law, each by the mean of its runs, drawn towards [`BETWEEN`]
-/// while they are few.
+/// How far pipelines lie from the law, each by the mean of its runs, drawn towards
+/// [`PRIOR_SPREAD`] while they are few.
 fn between_pipelines(seen: &[Seen<'_>], values: &[f64]) -> (f64, f64) {
     let mut means: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for (s, v) in seen.iter().zip(values) {
@@ -108,6 +109,6 @@ fn between_pipelines(seen: &[Seen<'_>], values: &[f64]) -> (f64, f64) {
     // The law was fitted to them: of two pipelines each lies half as far off as it would when left
     // out.
     let own = if count > 1.0 { squares * (count / (count - 1.0)).powi(2) } else { 0.0 };
-    let free = count - 1.0 + BETWEEN.1;
-    (((own + BETWEEN.0 * BETWEEN.0 * BETWEEN.1) / free).sqrt(), free)
+    let free = count - 1.0 + PRIOR_PIPELINES;
+    (((own + PRIOR_SPREAD * PRIOR_SPREAD * PRIOR_PIPELINES) / free).sqrt(), free)
 }

@@ -20,8 +20,10 @@ const SHORTEST: f64 = 1.5e-3;
 const RATIO: f64 = 1.2;
 /// Sag of up to this many times that of the shortest chord is noise.
 const NOISE: f64 = 1.5;
-/// Points of the curve lie no farther apart than this, metres, or than this share of it.
-const SPACING: (f64, f64) = (5e-4, 5e-5);
+/// Points of the curve lie no farther apart than this, metres, or than [`SPACING_SHARE`] of it.
+const SPACING: f64 = 5e-4;
+/// The share of a curve's length that its points may lie apart where that is more than [`SPACING`].
+const SPACING_SHARE: f64 = 5e-5;
 /// Chords shorter than this share of the edge length come from a missed corner, not from the curve.
 const LEAST_SHARE: f64 = 1.0 / 8.0;
 
@@ -124,7 +126,7 @@ fn lengths(points: &[Point2]) -> Vec<f64> {
 /// The curve with points near each other, and the indices of its ends and corners, ascending.
 fn filled(points: &[Point2], corners: &[usize]) -> (Vec<Point2>, Vec<usize>) {
     let total: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-    let spacing = SPACING.0.max(total * SPACING.1);
+    let spacing = SPACING.max(total * SPACING_SHARE);
     let (mut dense, mut stops) = (Vec::with_capacity(points.len()), Vec::new());
     for (i, p) in points.iter().enumerate() {
         let before = points[i.saturating_sub(1)];

@@ -21,23 +21,31 @@ use toile_core::prelude::*;
 /// Vertices farther from an armpit than this share of the body's height stay.
 const NEAR: f64 = 0.12;
 
-/// Cosines: of the angle between normals that face each other at most, and between normal and way
-/// to the other vertex at least.
-const FACING: (f64, f64) = (-0.2, 0.4);
+/// Cosine of the angle between normals that face each other, at most.
+const FACING_COSINE: f64 = -0.2;
+
+/// Cosine of the angle between a normal and the way to the other vertex, at least.
+const WAY_COSINE: f64 = 0.4;
 
 /// Rings of vertices by which the gap is widened and narrowed again, so that its bottom counts with
 /// its walls.
 const RINGS: usize = 3;
 
-/// Rounds of relaxation at most; and it ends where no vertex moves farther, metres.
-const RELAX: (usize, f64) = (300, 2e-5);
+/// Rounds of relaxation at most.
+const RELAX_ROUNDS: usize = 300;
+
+/// Relaxation ends where no vertex moves this far, metres.
+const LEAST_MOVE: f64 = 2e-5;
 
 /// The skin over a gap stays this far outside the body, metres.
 const CLEAR: f64 = 1e-3;
 
 /// Where the body still comes through the bridge, the bridge is raised by as much and this
-/// distance, metres, at most so many times.
-const RAISE: (f64, usize) = (2e-4, 8);
+/// distance, metres.
+const RAISE_MORE: f64 = 2e-4;
+
+/// The bridge is raised at most so many times.
+const RAISE_ROUNDS: usize = 8;
 
 /// The body is looked for up to [`SEEN`] outside the skin, metres, and counts as outside from
 /// [`OUT`] on, metres; the [`CORNERS`] vertices of the gap that are nearest to such a place are
@@ -73,16 +81,15 @@ pub fn bridged(body: &Body, width: f64, cx: &Context) -> Result<Option<Body>, St
 /// The vertices of `near` that face another of them within `width`.
 fn facing(body: &Body, near: &[u32], width: f64) -> BTreeSet<u32> {
     let normals = body.vertex_normals();
-    let (against, along) = FACING;
     let sees = |a: &u32, b: &u32| {
         let way = body.positions[*b as usize] - body.positions[*a as usize];
         let (na, nb) = (normals[*a as usize], normals[*b as usize]);
         let length = way.norm();
         length > 0.0
             && length < width
-            && na.dot(&nb) < against
-            && way.dot(&na) > along * length
-            && -way.dot(&nb) > along * length
+            && na.dot(&nb) < FACING_COSINE
+            && way.dot(&na) > WAY_COSINE * length
+            && -way.dot(&nb) > WAY_COSINE * length
     };
     near.par_iter().filter(|a| near.iter().any(|b| sees(a, b))).copied().collect()
 }
@@ -105,8 +112,7 @@ fn relax(
     let solid = Solid::new(body.positions.iter().map(|p| p.coords).collect(), &body.triangles);
     // Where each vertex was seen last, and how far from the body.
     let mut seen: Vec<(Point3, f64)> = body.positions.iter().map(|p| (*p, 0.0)).collect();
-    let (rounds, least) = RELAX;
-    for _ in 0..rounds {
+    for _ in 0..RELAX_ROUNDS {
         cx.check()?;
         let mut farthest = 0.0f64;
         for &v in gap {
@@ -125,7 +131,7 @@ fn relax(
             farthest = farthest.max((p - body.positions[v as usize]).norm());
             body.positions[v as usize] = p;
         }
-        if farthest < least {
+        if farthest < LEAST_MOVE {
             break;
         }
     }
@@ -148,16 +154,15 @@ fn raise(
         .map(at)
         .flat_map(|[a, b, c]| [a, b, c, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0])
         .collect();
-    let (more, rounds) = RAISE;
     let mut nearest: Vec<u32> = gap.iter().copied().collect();
-    for _ in 0..rounds {
+    for _ in 0..RAISE_ROUNDS {
         cx.check()?;
         let solid = Solid::new(over.positions.iter().map(|p| p.coords).collect(), &over.triangles);
         let mut raised: BTreeMap<u32, Vector3> = BTreeMap::new();
         let found: Vec<_> = points.par_iter().map(|p| solid.nearest(p, SEEN)).collect();
         for n in found.into_iter().flatten().filter(|n| n.distance > OUT) {
             let far = |v: &u32| (over.positions[*v as usize].coords - n.point).norm_squared();
-            let by = n.normal * (n.distance + more);
+            let by = n.normal * (n.distance + RAISE_MORE);
             if nearest.len() > CORNERS {
                 nearest.select_nth_unstable_by(CORNERS, |a, b| far(a).total_cmp(&far(b)).then(a.cmp(b)));
             }

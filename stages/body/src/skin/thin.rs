@@ -16,9 +16,12 @@ use rayon::prelude::*;
 use toile_cloth::contact::body::Body as Solid;
 use toile_core::prelude::*;
 
-/// The least and the largest ball that is looked for, metres, and how often the stretch between is
-/// halved.
-const BALL: (f64, f64, usize) = (0.0, 0.12, 6);
+/// Radius of the least ball that is looked for, metres.
+const LEAST_RADIUS: f64 = 0.0;
+/// Radius of the largest ball that is looked for, metres.
+const LARGEST_RADIUS: f64 = 0.12;
+/// How often the stretch between least and largest radius is halved.
+const HALVINGS: usize = 6;
 
 /// The share of its radius that the middle of a ball must be inside the body: bumps count as
 /// nothing.
@@ -31,19 +34,20 @@ const LOWEST: f64 = 0.06;
 /// Rounds in which ways are smoothed over the mesh.
 const SMOOTHING: usize = 40;
 
-/// The share of the radius by which the figure is thinner at first, and in how many steps it grows.
-const THINNER: (f64, usize) = (0.6, 8);
+/// The share of the radius by which the figure is thinner at first.
+const THINNER: f64 = 0.6;
+/// Steps in which the figure grows to its full size.
+const STEPS: usize = 8;
 
 /// What the garment is sewn on, one after the other, before the body itself comes: points, of the
 /// same triangles as the body's.
 pub fn grown(positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<Vec<Point3>> {
     let ways = inwards(positions, triangles);
-    let (share, steps) = THINNER;
     let of = |k: usize| {
-        let by = share * k as f64 / steps as f64;
+        let by = THINNER * k as f64 / STEPS as f64;
         positions.iter().zip(&ways).map(|(p, w)| p + w * by).collect()
     };
-    (1..=steps).rev().map(of).collect()
+    (1..=STEPS).rev().map(of).collect()
 }
 
 /// The way from each vertex to the middle of its ball, smoothed.
@@ -74,7 +78,7 @@ fn way(radius: f64, n: &Vector3) -> Vector3 {
 /// The radius of the largest ball inside the body that touches it about at `p`, where its normal is
 /// `n`.
 fn ball(solid: &Solid, p: &Point3, n: &Vector3) -> f64 {
-    let (mut least, mut most, halvings) = BALL;
+    let (mut least, mut most) = (LEAST_RADIUS, LARGEST_RADIUS);
     let fits = |radius: f64| {
         solid
             .nearest(&(p.coords - n * radius), f64::INFINITY)
@@ -83,7 +87,7 @@ fn ball(solid: &Solid, p: &Point3, n: &Vector3) -> f64 {
     if fits(most) {
         return most;
     }
-    for _ in 0..halvings {
+    for _ in 0..HALVINGS {
         let middle = 0.5 * (least + most);
         if fits(middle) { least = middle } else { most = middle }
     }
@@ -139,7 +143,7 @@ mod tests {
     fn a_mannequin_is_thin_at_first_and_grows_to_its_size_without_leaving_it() {
         let body = mannequin();
         let steps = grown(&body.positions, &body.triangles);
-        assert_eq!(steps.len(), THINNER.1);
+        assert_eq!(steps.len(), STEPS);
         let volumes: Vec<f64> = steps.iter().map(|s| volume(&body, s) / body.volume()).collect();
         assert!((0.1..0.5).contains(&volumes[0]), "{volumes:?}");
         assert!(volumes.windows(2).all(|v| v[0] < v[1]) && *volumes.last().unwrap() < 0.95, "{volumes:?}");

@@ -6,13 +6,14 @@
 //! the state meets the same limit of speed. Which of several neighbouring states is found may
 //! differ, as between starts that are moved by a millimetre. Source: Lanzkron, Rose, Wilkes 1996.
 
-use super::mixed_precision::APART;
+use super::mixed_precision::{APART_CONTINUED, APART_STRAIGHT};
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 
-/// Share of the stage's time that it saves, on garments of some thousand triangles: continued,
-/// straight.
-const SHARE: (f64, f64) = (0.05, 0.25);
+/// Share of the stage's time that it saves, on garments of some thousand triangles: continued.
+const SHARE_CONTINUED: f64 = 0.05;
+/// Share of the stage's time that it saves, on garments of some thousand triangles: straight.
+const SHARE_STRAIGHT: f64 = 0.25;
 
 /// The decision of a drape of so many triangles.
 pub(super) fn rule(asleep: bool, continued: bool, size: &Size) -> Option<Decision> {
@@ -22,8 +23,8 @@ pub(super) fn rule(asleep: bool, continued: bool, size: &Size) -> Option<Decisio
         state: State::Simplified,
         what: "steps of all vertices: while few of them move, only these".into(),
         fact: format!("about {triangles:.0} triangles, most of which rest before the last ones do"),
-        tolerance: Tolerance::Distance(if continued { APART.0 } else { APART.1 }),
-        saves: Saves::Share(if continued { SHARE.0 } else { SHARE.1 }),
+        tolerance: Tolerance::Distance(if continued { APART_CONTINUED } else { APART_STRAIGHT }),
+        saves: Saves::Share(if continued { SHARE_CONTINUED } else { SHARE_STRAIGHT }),
         source: "nonlinear elimination: Lanzkron, Rose, Wilkes 1996".into(),
         turn: Turn::Param { name: "asleep".into(), value: "false".into() },
     })

@@ -34,9 +34,12 @@ impl From<FactorPrecision> for toile_cloth::statics::drive::solve::Precision {
 /// Share of the stage's time that it saves, on garments of some thousand triangles.
 const SHARE: f64 = 0.08;
 
-/// How far the surface may lie from that of double precision (95 %), m: continued, as far as states
-/// that chance picks from; straight, as far as the folds of two moved starts.
-pub(super) const APART: (f64, f64) = (0.008, 0.02);
+/// How far the surface may lie from that of double precision (95 %), metres: continued, as far as
+/// states that chance picks from.
+pub(super) const APART_CONTINUED: f64 = 0.008;
+/// How far the surface may lie from that of double precision (95 %), metres: straight, as far as
+/// the folds of two moved starts.
+pub(super) const APART_STRAIGHT: f64 = 0.02;
 
 /// The decision of a drape of so many triangles.
 pub(super) fn rule(precision: FactorPrecision, continued: bool, size: &Size) -> Option<Decision> {
@@ -48,7 +51,7 @@ pub(super) fn rule(precision: FactorPrecision, continued: bool, size: &Size) -> 
         fact: format!(
             "about {triangles:.0} triangles, whose matrix shows at each step how well it is solved"
         ),
-        tolerance: Tolerance::Distance(if continued { APART.0 } else { APART.1 }),
+        tolerance: Tolerance::Distance(if continued { APART_CONTINUED } else { APART_STRAIGHT }),
         saves: Saves::Share(SHARE),
         source: "iterative refinement: Wilkinson 1963; Carson, Higham 2018".into(),
         turn: Turn::Param { name: "precision".into(), value: "Double".into() },

@@ -11,18 +11,24 @@ use toile_core::artifact::Curve;
 /// The line force at which the Kawabata tensile test ends, N/m (500 gf/cm).
 pub(crate) const KES_FORCE: f64 = 490.332_5;
 
-/// Linearities that two rising pieces can show.
-pub(crate) const LINEARITY: (f64, f64) = (0.55, 1.0);
+/// The least linearity that two rising pieces can show.
+pub(crate) const LEAST_LINEARITY: f64 = 0.55;
 
-/// Shear angle at which threads jam and stiffen, and the angle where the curve's given part ends.
-const JAM: (f64, f64) = (0.5, 0.8);
+/// The greatest linearity that two rising pieces can show.
+pub(crate) const GREATEST_LINEARITY: f64 = 1.0;
+
+/// Shear angle at which threads jam and stiffen, radians.
+const JAM_ANGLE: f64 = 0.5;
+
+/// Shear angle where the curve's given part ends, radians.
+const LAST_ANGLE: f64 = 0.8;
 
 /// Jammed threads are stiffer in shear by this factor.
 const JAMMED: f64 = 10.0;
 
 /// The curve through (`strain`, `force`) whose work is `linearity` times that of a straight line.
 pub fn tensile_curve(strain: f64, force: f64, linearity: f64) -> Curve {
-    let linearity = linearity.clamp(LINEARITY.0, LINEARITY.1);
+    let linearity = linearity.clamp(LEAST_LINEARITY, GREATEST_LINEARITY);
     if linearity >= 1.0 {
         return Curve(vec![(strain, force)]);
     }
@@ -34,6 +40,6 @@ pub fn tensile_curve(strain: f64, force: f64, linearity: f64) -> Curve {
 
 /// The shear curve with stiffness `k` (N/m per rad) up to the angle where threads jam.
 pub(crate) fn shear_curve(k: f64) -> Curve {
-    let jam = k * JAM.0;
-    Curve(vec![(JAM.0, jam), (JAM.1, jam + JAMMED * k * (JAM.1 - JAM.0))])
+    let jam = k * JAM_ANGLE;
+    Curve(vec![(JAM_ANGLE, jam), (LAST_ANGLE, jam + JAMMED * k * (LAST_ANGLE - JAM_ANGLE))])
 }

@@ -1,7 +1,7 @@
 //! `Kes`: a cloth by the figures of the Kawabata test.
 
 use super::AIR_DAMPING;
-use super::curve::{KES_FORCE, LINEARITY, shear_curve, tensile_curve};
+use super::curve::{GREATEST_LINEARITY, KES_FORCE, LEAST_LINEARITY, shear_curve, tensile_curve};
 use toile_core::prelude::*;
 
 /// 1 gf cm2/cm, N m.
@@ -28,7 +28,7 @@ pub struct Kes {
     #[param(default = (3.0, 6.0), min = 0.05, max = 300.0, unit = "%")]
     emt: (f64, f64),
     /// Linearity LT of the tensile curve.
-    #[param(default = 0.75, min = LINEARITY.0, max = LINEARITY.1)]
+    #[param(default = 0.75, min = LEAST_LINEARITY, max = GREATEST_LINEARITY)]
     lt: f64,
     /// Shear stiffness G.
     #[param(default = 1.6, min = 0.001, max = 100.0, unit = "gf/(cm degree)")]

@@ -12,9 +12,11 @@ use toile_core::prelude::*;
 
 /// Levels at which the body is measured.
 const LEVELS: [&str; 3] = ["bust", "waist", "hip"];
-/// Where an armhole opens the garment at a level, or a sleeve leaves it, its girth is taken this
-/// much lower at most, in steps, metres.
-const LOWER: (u32, f64) = (20, 0.005);
+/// Where an armhole opens the garment at a level, or a sleeve leaves it, its girth is taken lower
+/// by fewer steps than this.
+const STEPS_DOWN: u32 = 20;
+/// Height of a step, metres.
+const STEP: f64 = 0.005;
 /// A waist seam is not always at the body's waist: the narrowest of this many steps above and below
 /// counts.
 const WAIST: u32 = 4;
@@ -36,14 +38,14 @@ pub fn girths(garment: &Garment, body: &Body) -> BTreeMap<String, GirthFigures> 
         let waist = body.landmarks.get("waist_front").filter(|_| level == "bust");
         let least = waist.map_or(f64::NEG_INFINITY, |waist| f64::midpoint(front.y, waist.y));
         let at = |y: f64| around(garment, y, middle, &arms(body, y));
-        let below = |k: u32| at(front.y - f64::from(k) * LOWER.1);
+        let below = |k: u32| at(front.y - f64::from(k) * STEP);
         let narrowest = || {
-            let above = (1..=WAIST).filter_map(|k| at(front.y + f64::from(k) * LOWER.1));
+            let above = (1..=WAIST).filter_map(|k| at(front.y + f64::from(k) * STEP));
             above.chain((0..=WAIST).filter_map(below)).reduce(f64::min)
         };
         let cloth_m = match level {
             "waist" => narrowest(),
-            _ => (0..LOWER.0).filter(|k| front.y - f64::from(*k) * LOWER.1 >= least).filter_map(below).next(),
+            _ => (0..STEPS_DOWN).filter(|k| front.y - f64::from(*k) * STEP >= least).filter_map(below).next(),
         }?;
         Some((level.to_owned(), GirthFigures { cloth_m, body_m }))
     };

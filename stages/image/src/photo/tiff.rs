@@ -9,8 +9,10 @@
 const SUBFILE: u64 = 254;
 const WIDTH: u64 = 256;
 const HEIGHT: u64 = 257;
-const STRIPS: (u64, u64) = (273, 279);
-const TILES: (u64, u64) = (324, 325);
+const STRIP_OFFSETS: u64 = 273;
+const STRIP_LENGTHS: u64 = 279;
+const TILE_OFFSETS: u64 = 324;
+const TILE_LENGTHS: u64 = 325;
 const DNG_VERSION: u64 = 50706;
 
 /// Entries of a directory that are looked at.
@@ -83,7 +85,8 @@ impl<'a> Directory<'a> {
 
     /// Whether all strips or tiles lie in the file; also where it does not say how long they are.
     pub(super) fn is_complete(&self) -> bool {
-        [STRIPS, TILES].into_iter().all(|(offsets, lengths)| {
+        let tags = [(STRIP_OFFSETS, STRIP_LENGTHS), (TILE_OFFSETS, TILE_LENGTHS)];
+        tags.into_iter().all(|(offsets, lengths)| {
             let (Some(from), Some(long)) = (self.values(offsets), self.values(lengths)) else { return true };
             let number =
                 |v: &TagValues, i: u64| self.number(v.at.checked_add(i.checked_mul(v.size)?)?, v.size);

@@ -2,8 +2,8 @@
 
 use super::fault::surface_fault;
 use super::file::{
-    Mended, NO_POINT, PiecesBy, RawMesh, cloth_of_ours, labels, leave_out, lies, list, open_cloth, read_glb,
-    read_obj, wholes,
+    GARMENT_SIZES, Mended, NO_POINT, PiecesBy, RawMesh, cloth_of_ours, labels, leave_out, lies, list,
+    open_cloth, read_glb, read_obj, wholes,
 };
 use super::sheet::{PieceDetails, assembled, unlike};
 use std::sync::Arc;
@@ -58,9 +58,6 @@ pub enum FlatShape {
     /// The texture points are the pieces as they were cut, in the file's unit.
     Uv,
 }
-
-/// The diagonals that garments have, metres.
-const SIZES: (f64, f64) = (0.05, 6.0);
 
 /// Reads a garment from a Wavefront OBJ file or a binary glTF file (GLB), to be flattened.
 ///
@@ -184,10 +181,10 @@ impl Garment3d {
         let Some(first) = used().next() else { return Ok(()) };
         let (lo, hi) = used().fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
         let size = (hi - lo).norm();
-        if (SIZES.0..=SIZES.1).contains(&size) {
+        if GARMENT_SIZES.contains(&size) {
             return Ok(());
         }
-        let fits = |u: &FileUnit| (SIZES.0..=SIZES.1).contains(&(size / self.unit.metres() * u.metres()));
+        let fits = |u: &FileUnit| GARMENT_SIZES.contains(&(size / self.unit.metres() * u.metres()));
         let hint = match FileUnit::ALL.iter().find(|u| fits(u)) {
             Some(unit) => {
                 format!(

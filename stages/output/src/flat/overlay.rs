@@ -10,21 +10,26 @@ use nalgebra::Rotation2;
 use std::f64::consts::FRAC_PI_2;
 use toile_core::prelude::*;
 
-/// Rounds and points of an outline, about: to choose the start, and to end.
-const CHOOSING: (usize, usize) = (8, 100);
-const ENDING: (usize, usize) = (60, 400);
+/// Rounds at most that choose the start.
+const CHOOSING_ROUNDS: usize = 8;
+/// Points of an outline, about, that choose the start.
+const CHOOSING_POINTS: usize = 100;
+/// Rounds at most from the chosen start to the end.
+const ENDING_ROUNDS: usize = 60;
+/// Points of an outline, about, from the chosen start to the end.
+const ENDING_POINTS: usize = 400;
 /// A round that improves the mean square by less than this share is the last.
 const SETTLED: f64 = 1e-6;
 
 /// Root mean square and greatest distance between two closed outlines, both ways; none of outlines
 /// without points.
 pub(super) fn outline_distance(one: &[Point2], other: &[Point2]) -> Option<(f64, f64)> {
-    let (a, b) = (sampled(one, CHOOSING.1)?, sampled(other, CHOOSING.1)?);
+    let (a, b) = (sampled(one, CHOOSING_POINTS)?, sampled(other, CHOOSING_POINTS)?);
     let starts = (0..4).map(|k| Rotation2::new(f64::from(k) * FRAC_PI_2));
-    let rated = starts.map(|turn| (laid_over(&a, &b, turn, CHOOSING.0).1, turn));
+    let rated = starts.map(|turn| (laid_over(&a, &b, turn, CHOOSING_ROUNDS).1, turn));
     let (_, turn) = rated.min_by(|x, y| x.0.total_cmp(&y.0))?;
-    let (a, b) = (sampled(one, ENDING.1)?, sampled(other, ENDING.1)?);
-    let (a, _) = laid_over(&a, &b, turn, ENDING.0);
+    let (a, b) = (sampled(one, ENDING_POINTS)?, sampled(other, ENDING_POINTS)?);
+    let (a, _) = laid_over(&a, &b, turn, ENDING_ROUNDS);
     let far =
         |from: &[Point2], to: &[Point2]| from.iter().map(|p| (p - nearest(p, to)).norm()).collect::<Vec<_>>();
     let all = [far(&a, &b), far(&b, &a)].concat();

@@ -42,10 +42,12 @@ const AROUND: u32 = 3;
 /// Light is averaged over squares of this share of the picture's shorter side: wider than a fly or
 /// a zip.
 const WIDE: f64 = 0.12;
-/// Side of the square of weave: its share of the picture's shorter side, and its least and
-/// greatest, px.
+/// Side of the square of weave, as a share of the picture's shorter side.
 const SQUARE: f64 = 0.12;
-const SIDES: (usize, usize) = (8, 128);
+/// The least side of the square of weave, px.
+const LEAST_SQUARE: usize = 8;
+/// The greatest side of the square of weave, px.
+const GREATEST_SQUARE: usize = 128;
 
 /// What a picture of cloth shows.
 enum ShownCloth {
@@ -280,7 +282,7 @@ impl Weave {
     /// `None` where no square of plain cloth is large enough to show a weave.
     fn of(pixels: &RgbImage, kept: &GrayImage) -> Option<Weave> {
         let (w, h) = (pixels.width() as usize, pixels.height() as usize);
-        let side = ((w.min(h) as f64 * SQUARE) as usize).clamp(SIDES.0, SIDES.1);
+        let side = ((w.min(h) as f64 * SQUARE) as usize).clamp(LEAST_SQUARE, GREATEST_SQUARE);
         let step = (side / 2).max(w.min(h) / 12).max(1);
         let starts = |n: usize| (0..=n.saturating_sub(side)).step_by(step);
         let corners = starts(h).flat_map(|top| starts(w).map(move |left| [left, top]));

@@ -33,8 +33,10 @@ pub struct SceneJson {
     pub gravity: f64,
 }
 
-/// Without a collider: distance at which cloth is held off itself, m, and friction on the body.
-const PLAIN: (f64, f64) = (1e-3, 0.3);
+/// Distance at which cloth is held off itself without a collider, metres.
+const PLAIN_THICKNESS: f64 = 1e-3;
+/// Coefficient of friction on the body without a collider.
+const PLAIN_FRICTION: f64 = 0.3;
 
 #[stage]
 impl SceneJson {
@@ -51,7 +53,7 @@ impl SceneJson {
         let setting = SceneSetting {
             gravity: down,
             air: None,
-            thickness: card.map_or(PLAIN.0, |c| c.thickness),
+            thickness: card.map_or(PLAIN_THICKNESS, |c| c.thickness),
             self_collision: card.is_none_or(|c| c.self_collision),
         };
         let mut scene = scene_of(garment, &setting)?;
@@ -61,7 +63,7 @@ impl SceneJson {
         scene.body = body.filter(|b| !b.triangles.is_empty()).map(|b| SceneBody {
             vertices: b.positions.iter().map(|p| p.coords).collect(),
             triangles: b.triangles.clone(),
-            friction: card.map_or(PLAIN.1, |c| c.friction),
+            friction: card.map_or(PLAIN_FRICTION, |c| c.friction),
         });
         let obj = format!("{}_body.obj", self.name);
         let json = OutputFile::new(format!("{}.json", self.name), to_json(&scene, &obj).into());

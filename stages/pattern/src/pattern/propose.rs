@@ -17,8 +17,10 @@ use toile_core::prelude::*;
 
 /// Shorter edges are not told apart, metres.
 const SHORTEST: f64 = 0.012;
-/// Lengths agree to this, metres, or this share.
-const NEAR: (f64, f64) = (1e-3, 0.002);
+/// Lengths agree to this, metres, or to [`LENGTH_TOLERANCE_SHARE`].
+const LENGTH_TOLERANCE: f64 = 1e-3;
+/// The share of the longer one to which lengths agree where that is more than [`LENGTH_TOLERANCE`].
+const LENGTH_TOLERANCE_SHARE: f64 = 0.002;
 /// An edge is an end of a piece if the sine of its angle to the cross grain is at most this.
 const ACROSS: f64 = 0.45;
 /// An end also lies within this share of the piece's length from its lowest or highest point.
@@ -214,7 +216,7 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
         return None;
     }
     let apart = (a.length - b.length).abs();
-    let near = NEAR.0.max(NEAR.1 * a.length.max(b.length));
+    let near = LENGTH_TOLERANCE.max(LENGTH_TOLERANCE_SHARE * a.length.max(b.length));
     let shared = a.piece == b.piece && a.edges.iter().any(|e| b.edges.contains(e));
     if apart > near || shared {
         return None;

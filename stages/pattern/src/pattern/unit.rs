@@ -1,5 +1,6 @@
 //! The length of a drawing's own unit, and whether a garment of it is of a size that someone wears.
 
+use std::ops::RangeInclusive;
 use toile_core::prelude::*;
 
 /// The unit of the numbers in a drawing.
@@ -24,9 +25,9 @@ pub enum DrawingUnit {
 
 /// The longest side of a garment's largest piece, metres; a unit that the file states is used if
 /// this size is within these.
-const WORN: (f64, f64) = (0.15, 5.0);
+pub(super) const WORN: RangeInclusive<f64> = 0.15..=5.0;
 /// The same size, metres, where nothing states the unit.
-const LIKELY: (f64, f64) = (0.25, 2.5);
+pub(super) const LIKELY: RangeInclusive<f64> = 0.25..=2.5;
 /// What that side is most often, metres.
 const USUAL: f64 = 0.7;
 
@@ -125,12 +126,12 @@ pub(super) fn worn(pieces: &[Piece], taken: &Taken) -> Result<(), Misfit> {
         By::File => WORN,
         By::Guess => LIKELY,
     };
-    if (sizes.0..=sizes.1).contains(&size) {
+    if sizes.contains(&size) {
         return Ok(());
     }
     let units = size / taken.metres;
     let long = |unit: &DrawingUnit| units * unit.metres().unwrap_or(1.0);
-    let fits = |unit: &DrawingUnit| (LIKELY.0..=LIKELY.1).contains(&long(unit));
+    let fits = |unit: &DrawingUnit| LIKELY.contains(&long(unit));
     let fitting: Vec<DrawingUnit> = DrawingUnit::MEANT[..4].iter().copied().filter(fits).collect();
     let fitting = match fitting.is_empty() {
         true => DrawingUnit::MEANT[4..].iter().copied().filter(fits).take(1).collect(),

@@ -17,6 +17,7 @@ mod sewing;
 mod tests;
 
 pub use block::{Block, BlockStyle, Complete, Fitting, Sides, Waist};
+pub(crate) use block::{TRUNK_BOTTOM, TRUNK_TOP};
 pub use neckline::Neckline;
 pub use outline::{Outline, OutlineStyle};
 pub use seams::{SeamEntry, Seams};

@@ -17,13 +17,18 @@ use super::replaced::replaced;
 use rayon::prelude::*;
 use toile_core::prelude::*;
 
-/// Depths that are tried, as shares of the neck's width: first, last, step.
-const DEPTHS: (f64, f64, f64) = (0.28, 1.3, 0.01);
+/// The first depth that is tried, as a share of the neck's width.
+const FIRST_DEPTH: f64 = 0.28;
+/// The last depth that is tried, as a share of the neck's width.
+const LAST_DEPTH: f64 = 1.3;
+/// The step between depths that are tried, as a share of the neck's width.
+const DEPTH_STEP: f64 = 0.01;
 /// Powers of the curves `depth (1 - |s|^p)`: from nearly V to U.
 const POWERS: [f64; 6] = [1.2, 1.6, 2.0, 2.5, 3.2, 4.0];
-/// The likeliest depth, and how far off it a curve must be to count half, as shares of the neck's
-/// width.
-const USUAL: (f64, f64) = (0.5, 0.3);
+/// The likeliest depth, as a share of the neck's width.
+const USUAL_DEPTH: f64 = 0.5;
+/// How far off the likeliest depth a curve must be to count half, as a share of the neck's width.
+const HALF_COUNT_OFF: f64 = 0.3;
 /// A neck edge that dips by this share of its width is the front's neckline already.
 const DIPS: f64 = 0.3;
 /// Points of a curve at which colours are compared, over this share of its width: near its ends all
@@ -31,8 +36,10 @@ const DIPS: f64 = 0.3;
 const SAMPLES: usize = 40;
 const WITHIN: f64 = 0.86;
 /// Half the distance across the curve at which colours are compared, as a share of the neck's
-/// width, and the least in pixels.
-const ACROSS: (f64, f64) = (0.025, 1.5);
+/// width.
+const ACROSS: f64 = 0.025;
+/// Half the least distance across the curve at which colours are compared, px.
+const LEAST_ACROSS: f64 = 1.5;
 /// How far below the present edge a curve must lie, in such half distances, and over which part of
 /// its width: a back's collar is no neckline of the front.
 const MARGIN: f64 = 2.5;
@@ -185,7 +192,7 @@ impl Neckline {
         let mut curve = NeckCurve { depth: curve.depth.min(most), ..curve };
         if self.depth.is_none() && chord.length(&curve) < least {
             let shown = curve.depth;
-            curve = chord.long_enough(curve, least, most.min(DEPTHS.1 * chord.width));
+            curve = chord.long_enough(curve, least, most.min(LAST_DEPTH * chord.width));
             let text = format!(
                 "the neck of \"{name}\" would be too tight for the body: its front is cut {:.0} mm deep, and not {:.0} ({} keeps that)",
                 curve.depth * 1e3,
@@ -303,7 +310,7 @@ impl Chord {
 
     /// Half the distance across a curve at which colours are compared.
     fn across(&self, frame: PhotoFrame) -> f64 {
-        (ACROSS.0 * self.width).max(ACROSS.1 / frame.px_per_metre)
+        (ACROSS * self.width).max(LEAST_ACROSS / frame.px_per_metre)
     }
 
     /// How deep a neckline may be at most: it ends above the armpits, where the outline has
@@ -332,9 +339,9 @@ impl Chord {
     /// The curve of the most even change of colour below the present edge, and no deeper than
     /// `most`.
     fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64], most: f64) -> Option<NeckCurve> {
-        let steps = ((DEPTHS.1 - DEPTHS.0) / DEPTHS.2) as usize;
+        let steps = ((LAST_DEPTH - FIRST_DEPTH) / DEPTH_STEP) as usize;
         let depths =
-            (0..=steps).map(|k| (DEPTHS.0 + k as f64 * DEPTHS.2) * self.width).filter(|d| *d <= most);
+            (0..=steps).map(|k| (FIRST_DEPTH + k as f64 * DEPTH_STEP) * self.width).filter(|d| *d <= most);
         // Above the collar lies the ground, whose border is no neckline.
         let clear = MARGIN * self.across(frame);
         let inside = |c: &NeckCurve| {
@@ -348,7 +355,8 @@ impl Chord {
         let across = self.across(frame);
         let changes: Vec<Change> = curves.par_iter().map(|c| self.change(photo, frame, c, across)).collect();
         // Prints have even edges too, but not where necklines are.
-        let likely = |c: &NeckCurve| 1.0 / (1.0 + ((c.depth / self.width - USUAL.0) / USUAL.1).powi(2));
+        let likely =
+            |c: &NeckCurve| 1.0 / (1.0 + ((c.depth / self.width - USUAL_DEPTH) / HALF_COUNT_OFF).powi(2));
         let score = |i: &usize| changes[*i].score() * likely(&curves[*i]);
         let seen = (0..curves.len()).filter(|i| changes[*i].median >= LEAST_CHANGE);
         let best = seen.max_by(|a, b| score(a).total_cmp(&score(b))).map(|i| curves[i])?;

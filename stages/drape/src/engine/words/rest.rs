@@ -19,14 +19,16 @@ pub(crate) struct Rests<'a> {
     pub(crate) time_limit: f64,
 }
 
-/// A first mesh this many times finer, and no coarser than so many vertices, may do what a coarser
-/// one does not.
-const FINER: (usize, usize) = (3, 2000);
+/// A first mesh this many times finer, and of no fewer than [`FINER_VERTICES`], may do what a
+/// coarser one does not.
+const TIMES_FINER: usize = 3;
+/// Vertices of the finer first mesh at least.
+const FINER_VERTICES: usize = 2000;
 
 impl MessageContext<'_> {
     /// An error of the static solver.
     pub(crate) fn rest(&self, error: &StaticsError, can: &Rests<'_>) -> StageError {
-        let finer = || self.set("coarsest", FINER.1.max(FINER.0 * can.coarsest));
+        let finer = || self.set("coarsest", FINER_VERTICES.max(TIMES_FINER * can.coarsest));
         let through = (!can.sew_through).then(|| {
             format!(
                 "let cloth pass through what lies in its way while it is sewn: {}",

@@ -9,6 +9,7 @@ use super::closed::{Whole, wholes};
 use super::raw::{NO_POINT, RawMesh};
 use super::{read_glb, read_obj};
 use crate::render::parts::BODY;
+use std::ops::RangeInclusive;
 use toile_core::prelude::*;
 
 /// Vertices within this are one where closed parts are looked for, metres.
@@ -17,8 +18,8 @@ const JOIN: f64 = 1e-5;
 /// A closed part is a body from this diagonal on, metres.
 const BODY_SIZE: f64 = 0.5;
 
-/// A garment's diagonal in its right unit, metres.
-const SIZES: (f64, f64) = (0.05, 6.0);
+/// The diagonals that garments have in their right unit, metres.
+pub(in crate::flat) const GARMENT_SIZES: RangeInclusive<f64> = 0.05..=6.0;
 
 /// Units of OBJ files, metres, in the order in which they are tried.
 const UNITS: [f64; 4] = [1.0, 0.01, 0.001, 0.1];
@@ -89,7 +90,7 @@ fn guessed(raw: &RawMesh, file: &str, notes: &mut Vec<String>) -> Result<f64, St
     let Some(first) = used().next() else { return Ok(1.0) };
     let (lo, hi) = used().fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
     let size = (hi - lo).norm();
-    let fits = |u: &&f64| (SIZES.0..=SIZES.1).contains(&(size * **u));
+    let fits = |u: &&f64| GARMENT_SIZES.contains(&(size * **u));
     let Some(unit) = UNITS.iter().find(fits) else {
         let what = format!("\"{file}\": no unit makes its {size:.4} from corner to corner a garment");
         return Err(StageError::invalid(what)

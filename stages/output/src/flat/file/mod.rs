@@ -20,6 +20,7 @@ pub(super) use chosen::{cloth_of_ours, leave_out, open_cloth};
 pub(super) use closed::{list, wholes};
 pub use labels::PiecesBy;
 pub(super) use labels::{labels, of_corners};
+pub(super) use meshes::GARMENT_SIZES;
 pub use meshes::{FileMeshes, file_meshes};
 pub(super) use raw::{Mended, NO_POINT, RawMesh};
 pub(super) use read_glb::read_glb;

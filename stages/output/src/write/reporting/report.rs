@@ -13,8 +13,10 @@ use toile_core::Known;
 use toile_core::decide::Decision;
 use toile_core::prelude::*;
 
-/// The page; autoescaped, since its name ends in `.html`.
-const TEMPLATE: (&str, &str) = ("report.html", include_str!("report.html"));
+/// The name of the page's template: autoescaped, since it ends in `.html`.
+const TEMPLATE_NAME: &str = "report.html";
+/// The page's template.
+const TEMPLATE: &str = include_str!("report.html");
 /// What joins the turntable and the origins.
 const SCRIPT: &str = include_str!("report.js");
 
@@ -65,7 +67,7 @@ impl Report {
 fn html(page: &ReportPage) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build()?);
-    environment.add_template(TEMPLATE.0, TEMPLATE.1)?;
+    environment.add_template(TEMPLATE_NAME, TEMPLATE)?;
     environment.add_global("script", SCRIPT);
-    environment.get_template(TEMPLATE.0)?.render(Value::from(Serde(page)))
+    environment.get_template(TEMPLATE_NAME)?.render(Value::from(Serde(page)))
 }

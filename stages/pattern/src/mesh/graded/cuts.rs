@@ -19,8 +19,10 @@ use toile_core::{Context, StageError};
 const ROUNDS: usize = 8;
 /// A size that falls by less than this share is as it was.
 const SAME: f64 = 1e-3;
-/// Samples of a tie for each edge of the shortest length, and the most samples of one tie.
-const SAMPLES: (f64, f64) = (2.0, 1e5);
+/// Samples of a tie for each edge of the shortest length.
+const SAMPLES_PER_EDGE: f64 = 2.0;
+/// The most samples of one tie.
+const MOST_SAMPLES: f64 = 1e5;
 /// A part is never shorter than this share of the longest edge for the sake of the curve.
 const LEAST_SHARE: f64 = 1.0 / 8.0;
 
@@ -164,7 +166,7 @@ fn length(panels: &[Sized<'_>], tie: &[CutSide]) -> f64 {
 /// Edge lengths at equal steps along a tie, metres: the least that any side requires.
 fn profile(panels: &[Sized<'_>], tie: &[CutSide]) -> Vec<f64> {
     let (mut least, fine) = (Vec::new(), panels[tie[0].panel].field.range().fine);
-    let n = (length(panels, tie) * SAMPLES.0 / fine).clamp(4.0, SAMPLES.1).ceil() as usize;
+    let n = (length(panels, tie) * SAMPLES_PER_EDGE / fine).clamp(4.0, MOST_SAMPLES).ceil() as usize;
     least.resize(n + 1, f64::INFINITY);
     for side in tie {
         let panel = &panels[side.panel];

@@ -5,15 +5,12 @@
 //! size, the first usual unit that gives such a panel is taken, with a warning. Limit: the right
 //! unit of a file for a doll is taken for a wrong one.
 
+use super::super::unit::{LIKELY, WORN};
 use super::damage::SpecificationDamage;
 use super::read::RawFile;
 use toile_core::Remarks;
 use toile_core::artifact::Point2;
 
-/// The size of the largest panel, metres.
-const PLAUSIBLE: (f64, f64) = (0.15, 5.0);
-/// The size of the largest panel where the unit is guessed, metres.
-const LIKELY: (f64, f64) = (0.25, 2.5);
 /// Units in a metre: centimetres as GarmentCode writes, a third of that as some of its forerunner's
 /// templates, millimetres, inches, metres.
 const USUAL: [f64; 5] = [100.0, 300.0, 1000.0, 1000.0 / 25.4, 1.0];
@@ -23,7 +20,7 @@ const DEFAULT: f64 = 100.0;
 /// Metres in a unit.
 pub(super) fn metres(file: &RawFile, told: &mut Remarks) -> Result<f64, SpecificationDamage> {
     let size = file.panels.iter().map(|p| extent(&p.vertices)).fold(0.0, f64::max);
-    let fits = |units: f64| (PLAUSIBLE.0..=PLAUSIBLE.1).contains(&(size / units));
+    let fits = |units: f64| WORN.contains(&(size / units));
     let said = file.units.unwrap_or(DEFAULT);
     if file.units.is_none() {
         told.notes.push("the file does not say its units: read as centimetres".to_owned());
@@ -32,7 +29,7 @@ pub(super) fn metres(file: &RawFile, told: &mut Remarks) -> Result<f64, Specific
         return Ok(1.0 / said);
     }
     stray(file, said)?;
-    let likely = |units: &f64| (LIKELY.0..=LIKELY.1).contains(&(size / units));
+    let likely = |units: &f64| LIKELY.contains(&(size / units));
     match USUAL.into_iter().find(likely) {
         Some(units) => {
             told.warnings.push(format!(
@@ -55,7 +52,7 @@ fn stray(file: &RawFile, units: f64) -> Result<(), SpecificationDamage> {
         file.panels.iter().map(|p| (extent(&p.vertices) / units, p.name.as_str())).collect();
     sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
     let [(largest, panel), (next, _), ..] = sizes[..] else { return Ok(()) };
-    if largest > PLAUSIBLE.1 && (LIKELY.0..=LIKELY.1).contains(&next) {
+    if largest > *WORN.end() && LIKELY.contains(&next) {
         return Err(SpecificationDamage::Unsewable {
             what: format!("panel \"{panel}\" is {largest:.2} m long, the others at most {next:.2} m"),
             remedy: "correct its vertices",

@@ -11,10 +11,18 @@ use super::{Candidate, End, candidate};
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 
-/// A cap may be shorter than its armhole by this share, and longer by this.
-const CAP: (f64, f64) = (0.02, 0.08);
-/// A band may be shorter and longer than what it is sewn along by this share.
-const BAND: (f64, f64) = (0.02, 0.02);
+/// By how much a length may differ from that of what it is sewn along.
+struct LengthTolerance {
+    /// Shorter by this share of the other length at most.
+    shorter: f64,
+    /// Longer by this share of the other length at most.
+    longer: f64,
+}
+
+/// A cap may be shorter and longer than its armhole by these shares.
+const CAP: LengthTolerance = LengthTolerance { shorter: 0.02, longer: 0.08 };
+/// A band may be shorter and longer than what it is sewn along by these shares.
+const BAND: LengthTolerance = LengthTolerance { shorter: 0.02, longer: 0.02 };
 /// A long edge of a band is longer than this share of the band's outline.
 const LONG: f64 = 0.4;
 /// Notches that are farther apart than this say nothing, metres.
@@ -44,7 +52,7 @@ pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(P
     for cap in caps {
         for (n, ring) in around.iter().enumerate().filter(|(_, r)| !is_hem(r)) {
             let own = ring.edges.iter().any(|e| e.0 == cap.edges[0].0);
-            if let Some(exact) = fits(cap.length, ring.length, CAP).filter(|_| !own) {
+            if let Some(exact) = fits(cap.length, ring.length, &CAP).filter(|_| !own) {
                 let from = lowest(pieces, ring);
                 let told = notches(pieces, cap.edges[0], &from);
                 let sure = told.map_or(0.6, |apart| 0.95 - 0.3 * (apart / NOTCHES).min(1.0));
@@ -60,7 +68,7 @@ pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(P
     for band in bands {
         for (n, ring) in around.iter().enumerate().filter(|(_, r)| !is_hem(r)) {
             let own = ring.edges.iter().any(|e| e.0 == band.0);
-            if let Some(exact) = fits(one(band).length, ring.length, BAND).filter(|_| !own) {
+            if let Some(exact) = fits(one(band).length, ring.length, &BAND).filter(|_| !own) {
                 found.push((0.8 * exact, *band, n, opening(pieces, ring)));
             }
         }
@@ -83,9 +91,9 @@ fn perimeter(piece: &Piece) -> f64 {
 }
 
 /// How well a length fits another, between 0.75 and 1; none where it is too short or too long.
-fn fits(own: f64, other: f64, (short, long): (f64, f64)) -> Option<f64> {
+fn fits(own: f64, other: f64, tolerance: &LengthTolerance) -> Option<f64> {
     let more = own / other - 1.0;
-    let share = if more < 0.0 { -more / short } else { more / long };
+    let share = if more < 0.0 { -more / tolerance.shorter } else { more / tolerance.longer };
     (share <= 1.0).then_some(1.0 - 0.25 * share)
 }
 

@@ -14,9 +14,12 @@ use toile_core::prelude::*;
 
 /// Points of a line that are looked at.
 const SAMPLES: usize = 48;
-/// Points of all lines together to which they are thinned, and of each at least and at most.
+/// Points of all lines together to which they are thinned.
 const POINTS: usize = 60_000;
-const EACH: (usize, usize) = (64, 1024);
+/// Points of each line at least to which it is thinned.
+const LEAST_POINTS: usize = 64;
+/// Points of each line at most to which it is thinned.
+const MOST_POINTS: usize = 1024;
 /// What lies as near to an outline as this touches it, metres.
 const TOUCHES: f64 = 1e-3;
 
@@ -68,7 +71,7 @@ enum NestedKind {
 /// What the lines of a sheet of several pieces are.
 fn sheet(all: &[Outlined<'_, '_>]) -> Vec<NestedKind> {
     let boxes: Vec<(Point2, Point2)> = all.iter().map(|o| bounds(&o.polygon)).collect();
-    let most = (POINTS / all.len().max(1)).clamp(EACH.0, EACH.1);
+    let most = (POINTS / all.len().max(1)).clamp(LEAST_POINTS, MOST_POINTS);
     let thin: Vec<Vec<Point2>> = all.iter().map(|o| thinned(&o.polygon, most)).collect();
     // Which lines lie wholly within which; the later is drawn over the earlier.
     let within = |i: usize, j: usize| {

@@ -12,6 +12,7 @@ use super::PiecePlaces;
 use super::limb::Limb;
 use super::region::{Decided, Joint, Region, Side, bounds, joints, middle};
 use crate::place::sew::Offsets;
+use crate::style::{TRUNK_BOTTOM, TRUNK_TOP};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use toile_core::prelude::*;
@@ -20,8 +21,6 @@ use toile_core::prelude::*;
 const AWAY: f64 = 0.04;
 /// What hangs from the shoulders starts this far above them, metres.
 const ABOVE: f64 = 0.01;
-/// Heights of the body's trunk as shares of its height: feet and head stick out and do not count.
-const TRUNK: (f64, f64) = (0.3, 0.8);
 
 /// Sleeves stand this far before the axis of their arm until they are bent, metres.
 const BEFORE: f64 = 0.1;
@@ -65,7 +64,7 @@ impl Figure {
         let trunk = || {
             body.positions
                 .iter()
-                .filter(|p| p.x.abs() < shoulder.x.abs() && p.y > TRUNK.0 * top && p.y < TRUNK.1 * top)
+                .filter(|p| p.x.abs() < shoulder.x.abs() && p.y > TRUNK_BOTTOM * top && p.y < TRUNK_TOP * top)
         };
         let depth = (
             trunk().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max),
@@ -98,8 +97,9 @@ impl Figure {
     /// The greatest distance of the skin from a vertical axis between two heights; arms and head do
     /// not count.
     fn reach(&self, body: &Body, [x, z]: [f64; 2], (low, high): (f64, f64)) -> f64 {
-        let counts =
-            |p: &&Point3| p.y > low && p.y < high && p.x.abs() < self.shoulder[0] && p.y < TRUNK.1 * self.top;
+        let counts = |p: &&Point3| {
+            p.y > low && p.y < high && p.x.abs() < self.shoulder[0] && p.y < TRUNK_TOP * self.top
+        };
         body.positions.iter().filter(counts).map(|p| (p.x - x).hypot(p.z - z)).fold(0.0, f64::max)
     }
 }

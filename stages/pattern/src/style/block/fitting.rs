@@ -78,10 +78,12 @@ const ODD: f64 = 5.0;
 /// No garment is wider around chest or waist, or longer, metres: half as much again as the largest
 /// sizes that are sold.
 const LARGEST: [f64; 2] = [3.0, 2.5];
-/// Arms where nothing tells how they lie, and the angles that a mannequin has, degrees from the
-/// vertical.
+/// Arms where nothing tells how they lie, degrees from the vertical.
 const ARMS: f64 = 45.0;
-const REACH: (f64, f64) = (30.0, 75.0);
+/// The least angle that a mannequin's arms have, degrees from the vertical.
+const LEAST_ARM_ANGLE: f64 = 30.0;
+/// The greatest angle that a mannequin's arms have, degrees from the vertical.
+const GREATEST_ARM_ANGLE: f64 = 75.0;
 /// A trunk that lies flat is half its girth wide; worn, it is an ellipse about 0.7 times as deep as
 /// wide, and its armpits lie nearer to the axis by this share.
 const CLOSED: f64 = 0.26;
@@ -163,7 +165,7 @@ impl Fitting {
             );
         }
         let girths = [bust, waist, hip].map(|g| g / 100.0);
-        let arms = arms(form, &fit).clamp(REACH.0, REACH.1);
+        let arms = arms(form, &fit).clamp(LEAST_ARM_ANGLE, GREATEST_ARM_ANGLE);
         let mut body = mannequin(height / 100.0, girths, arms, self.edge.metres(), cx)?;
         body.measurements.extend(tape.kept());
         Ok(body)
@@ -211,9 +213,9 @@ pub(super) fn mannequin(
 ) -> Result<Body, StageError> {
     let made = Mannequin::made(height, girths, arms, edge).run(cx);
     match made {
-        Err(_) if arms < REACH.1 => {
+        Err(_) if arms < GREATEST_ARM_ANGLE => {
             cx.check()?;
-            mannequin(height, girths, (arms + SPREAD).min(REACH.1), edge, cx)
+            mannequin(height, girths, (arms + SPREAD).min(GREATEST_ARM_ANGLE), edge, cx)
         }
         done => done,
     }

@@ -32,6 +32,7 @@ use pieces::Making;
 use rayon::prelude::*;
 pub(super) use refusal::{LAY, no_front};
 pub(super) use stand::Stand;
+pub(crate) use stand::{TRUNK_BOTTOM, TRUNK_TOP};
 use tell::at_95;
 pub use template::alike::Sides;
 pub use template::complete::Complete;

@@ -9,8 +9,10 @@ use toile_core::prelude::*;
 const AWAY: f64 = 0.04;
 /// How far neck and waist start above the body's, metres.
 const ABOVE: f64 = 0.01;
-/// Heights of the trunk as shares of the body's: feet and head stick out and do not count.
-const TRUNK: (f64, f64) = (0.3, 0.8);
+/// Height of the trunk's lower end, as a share of the body's: feet stick out and do not count.
+pub(crate) const TRUNK_BOTTOM: f64 = 0.3;
+/// Height of the trunk's upper end, as a share of the body's: a head sticks out and does not count.
+pub(crate) const TRUNK_TOP: f64 = 0.8;
 
 /// Where a garment's axis stands: the height of its origin, and the planes of its layers.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +34,8 @@ impl Stand {
         let crown = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
         let side = body.landmark("shoulder", Hand::Left).map_or(f64::INFINITY, |p| p.x.abs());
         let trunk = || {
-            let counts = |p: &&Point3| p.x.abs() < side && p.y > TRUNK.0 * crown && p.y < TRUNK.1 * crown;
+            let counts =
+                |p: &&Point3| p.x.abs() < side && p.y > TRUNK_BOTTOM * crown && p.y < TRUNK_TOP * crown;
             body.positions.iter().filter(counts).map(|p| p.z)
         };
         let depth = (trunk().fold(0.0, f64::max) + AWAY, trunk().fold(0.0, f64::min) - AWAY);
