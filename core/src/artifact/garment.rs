@@ -75,8 +75,8 @@ pub struct SolveStatus {
     /// the solver's last look.
     pub max_speed: f64,
     /// For each panel the share of it that is still in its place on the body, after all solvers: 1
-    /// minus the distance that its upper edge has sunk, as a share of its size. Empty where it was
-    /// not measured: no body, no weight.
+    /// minus the mean way down of all that it is sewn to, as a share of the height of its tallest
+    /// piece. Empty where it was not measured: no body, no weight.
     pub on_body: Vec<f64>,
     /// How friction holds it, for a solver that goes on from there.
     pub held: Held,
@@ -95,8 +95,9 @@ pub struct GarmentStart {
 /// Panels lifted into space with their seams.
 ///
 /// Each panel keeps its own vertices, so that rest positions and photo pixels stay one per vertex;
-/// vertices that are joined share one position and one representative in `weld`.
-#[derive(Debug, Clone)]
+/// vertices that are joined share one position and one representative in `weld`. The default has no
+/// panel.
+#[derive(Debug, Clone, Default)]
 pub struct Garment {
     /// Positions, metres.
     pub positions: Vec<Point3>,

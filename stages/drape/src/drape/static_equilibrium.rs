@@ -65,7 +65,7 @@ pub enum ProofSteps {
 /// `non_static` 0 and `proof` `Short`.
 #[stage(
     role = Draper,
-    version = 23,
+    version = 24,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "StaticEquilibrium(speed: 0.001, non_static: 0.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -185,9 +185,15 @@ impl StaticEquilibrium {
             true => starts::at_the_best(scene, garment, &self.solver(), engine_collider, &stopper, cx)?,
             false => scene,
         };
-        let mut result = self
-            .solver()
-            .solve_around(&scene, engine_collider, &[], &stopper, &mut |level| progress.tell(level));
+        // Where the body keeps seams open, the garment can be sewn around a thin figure instead.
+        let gives_way = self.sew_through && collider.is_some_and(|c| c.scheme.surface().is_some());
+        let mut result = Solver { gives_way, ..self.solver() }.solve_around(
+            &scene,
+            engine_collider,
+            &[],
+            &stopper,
+            &mut |level| progress.tell(level),
+        );
         if let (true, Some(collider), Some(why)) = (self.sew_through, collider, why_again(&result)) {
             let thin = thin_of(collider);
             let around: Vec<&dyn CollisionSurface> =
@@ -273,6 +279,7 @@ impl StaticEquilibrium {
             bending_continuation: self.bending_continuation,
             from_here: self.from_here,
             sew_through: self.sew_through,
+            gives_way: false,
             long_proof: self.proof == ProofSteps::Long,
             precision: self.precision.into(),
             asleep: self.asleep,

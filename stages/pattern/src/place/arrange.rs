@@ -65,7 +65,7 @@ const MIDDLE: f64 = 0.65;
 /// garment does not sew.
 #[stage(
     role = Placement,
-    version = 7,
+    version = 8,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)

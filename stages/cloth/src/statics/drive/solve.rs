@@ -134,6 +134,9 @@ impl StaticEquilibrium {
                 (Err(StaticsError::FallsPast(fallen)), Some(finer)) if !fallen.is_certain => finer,
                 // A coarse mesh may not go around a limb, may be folded onto itself by its seams,
                 // or may have folds too close for a finer mesh to separate.
+                (Err(e @ StaticsError::SeamNotClosed { .. }), _) if restarts > 0 && self.gives_way => {
+                    return Err(e);
+                }
                 (Err(e), Some(finer)) if e.is_of_a_coarse_mesh(plan.edge()) => finer,
                 (Err(e), _) => return Err(e),
             };

@@ -33,6 +33,9 @@ pub struct StaticEquilibrium {
     /// Whether cloth passes through cloth while its seams close. Other cloth then does not keep
     /// them open, and the crossings of the sewn garment are resolved.
     pub sew_through: bool,
+    /// Whether a seam that stays open on a finer mesh than the first ends the solution, because the
+    /// caller has another way of sewing: each finer mesh takes several times as long.
+    pub gives_way: bool,
     /// Whether a step of at least a tenth of a second in which nothing is faster than `speed`
     /// proves rest, too.
     pub long_proof: bool,
@@ -56,6 +59,7 @@ impl Default for StaticEquilibrium {
             bending_continuation: false,
             from_here: false,
             sew_through: false,
+            gives_way: false,
             long_proof: false,
             precision: Precision::default(),
             asleep: true,

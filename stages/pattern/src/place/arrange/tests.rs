@@ -50,6 +50,34 @@ fn gap(garment: &Garment, one: &str, other: &str) -> f64 {
     pairs.iter().map(gap).sum::<f64>() / pairs.len() as f64
 }
 
+/// The middle of two pieces.
+fn middle(garment: &Garment, names: &[String; 2]) -> Point3 {
+    let all: Vec<Point3> = names.iter().flat_map(|name| points(garment, name).to_vec()).collect();
+    Point3::from(all.iter().map(|p| p.coords).sum::<Vector3>() / all.len() as f64)
+}
+
+#[test]
+fn a_flounce_goes_round_the_arm_where_the_pattern_puts_it() {
+    let mut shirt = made("shirt");
+    // A cuff whose edge at the hand is three times as long: the seams between its halves run more
+    // across the arm than along it.
+    for (_, panel) in shirt.panels.0.iter_mut().filter(|(name, _)| name.contains("cuff")) {
+        let panel = std::sync::Arc::make_mut(panel);
+        let heights = || panel.positions.iter().map(|p| p.y);
+        let (low, high) =
+            (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+        panel.positions.iter_mut().for_each(|p| p.x *= 1.0 + 2.0 * (high - p.y) / (high - low));
+    }
+    let (flat, bent) = (arranged(&shirt, false).unwrap(), arranged(&shirt, true).unwrap());
+    for hand in ["left", "right"] {
+        let halves = ["front", "back"].map(|half| format!("{hand}_cuff_{half}"));
+        let moved = (middle(&flat, &halves) - middle(&bent, &halves)).norm();
+        assert!(moved < 0.05, "the {hand} flounce moved by {moved} m");
+        let (before, after) = (gap(&flat, &halves[0], &halves[1]), gap(&bent, &halves[0], &halves[1]));
+        assert!(after < before, "{hand}: {before} {after}");
+    }
+}
+
 #[test]
 fn halves_of_a_sleeve_close_round_the_arm() {
     let shirt = made("shirt");

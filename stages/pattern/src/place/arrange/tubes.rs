@@ -154,9 +154,9 @@ fn file_axis(
             let (one, other) = (of_tube(first[k]), of_tube(first[1 - k]));
             if let (Some(_), Some(_), Some(a), Some(b)) = (one, other, at(first[k]), at(last[k])) {
                 let way = b - a;
-                // From the trunk to the hand, whichever way the seam runs.
-                let outwards = way.x * limb.axis.x.signum() - 1e-6 * way.y;
-                sum += if outwards < 0.0 { -way } else { way };
+                // From the trunk to the hand, whichever way the seam runs. The seams of a flounce
+                // run more across the arm than along it.
+                sum += if way.dot(&limb.axis) < 0.0 { -way } else { way };
             }
         }
     }

@@ -229,6 +229,26 @@ fn a_seam_that_cannot_close_is_named() {
 }
 
 #[test]
+fn where_the_caller_has_another_way_a_seam_that_stays_open_is_not_tried_on_ever_finer_meshes() {
+    let mut scene = generate::tube(16, 17);
+    scene.rest.iter_mut().for_each(|p| p.x *= 0.7);
+    scene.positions.iter_mut().for_each(|p| p.x *= 0.7);
+    let meshes = |gives_way: bool| {
+        let mut sewn_on: Vec<usize> = Vec::new();
+        let solver = StaticEquilibrium { gives_way, sew_through: true, coarsest: 60, ..Default::default() };
+        let result = solver.solve(&scene, &mut |level| {
+            if level.sewing && sewn_on.last() != Some(&level.nodes) {
+                sewn_on.push(level.nodes);
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(matches!(result, Err(StaticsError::SeamNotClosed { .. })));
+        sewn_on.len()
+    };
+    assert_eq!((meshes(false), meshes(true)), (3, 2));
+}
+
+#[test]
 fn crossing_panels_are_refused() {
     let mut scene = generate::tube(8, 9);
     let half = scene.positions.len() / 2;
