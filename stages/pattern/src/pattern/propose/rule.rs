@@ -1,11 +1,11 @@
-//! Seams in the middle of the body and bands in parts, which the files that the scores are fitted to
-//! do not have: by rule.
+//! Seams in the middle of the body, tubes and bands in parts by rule: the files that the scores are
+//! fitted to do not have them.
 //!
-//! Method: of a piece that is cut twice, edges and chains of two of one length on its two sides make
-//! a tube; an edge along the grain is sewn to its image where nothing else fits it, on one side of the
-//! piece alone where that is straight; two edges at the top that follow each other are sewn to two edges of a band of the
-//! same lengths. Cost: edges squared. Limits: a sleeve that is open at the bottom looks like a piece
-//! with a seam in the middle.
+//! Method: of a piece that is cut twice, edges and chains of two of one length on its two sides
+//! make a tube; an edge along the grain is sewn to its image where nothing else fits it, on one
+//! side of the piece alone where that is straight; two edges at the top that follow each other are
+//! sewn to two edges of a band of the same lengths. Cost: edges squared. Limits: a sleeve that is
+//! open at the bottom looks like a piece with a seam in the middle.
 
 use super::border::Border;
 use super::choose::Found;

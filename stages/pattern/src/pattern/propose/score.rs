@@ -4,7 +4,7 @@
 //! then shared among the pairs that an edge is in, as it is sewn once. Cost: constant for a pair.
 
 use super::border::Border;
-use super::sheet::{Edge, PARTS, Sheet, apart, bulge};
+use super::sheet::{Edge, Sheet, apart, bulge};
 
 /// What is compared of two edges.
 pub(super) const FEATURES: usize = 53;
@@ -28,26 +28,24 @@ pub(super) fn near(x: f64, scale: f64) -> f64 {
 const LONGEST: f64 = 2.2;
 
 /// For every edge whether it is a part of its piece's upper (1) or lower (-1) end: one across the
-/// grain in the middle, or what lies as high beside that. Hems and waists are; shoulders are not.
+/// grain in the middle of a symmetric piece, or what lies as high beside that. Hems and waists are;
+/// necks are hollow, so that shoulders are not.
 fn ends(sheet: &Sheet) -> Vec<i8> {
     let looks = |e: usize| match sheet.edges[e].out.y {
         y if y > 0.9 => 1,
         y if y < -0.9 => -1,
         _ => 0,
     };
-    let in_middle = |e: usize| {
-        let [low, high] = sheet.boxes[sheet.edges[e].piece];
-        let x = [sheet.edges[e].points[0].x, sheet.edges[e].points[PARTS].x];
-        let middle = (low.x + high.x) / 2.0;
-        x[0].min(x[1]) < middle && middle < x[0].max(x[1])
-    };
+    // Across the line at which its piece is symmetric.
+    let in_middle = |e: usize| sheet.image[e] == Some(e);
     let one = |e: usize| {
         let piece = sheet.edges[e].piece;
         let height = sheet.heights(e);
         let beside = |m: &usize| {
             let tall = (height[0] + height[1]).max(1e-6);
             let level = (sheet.heights(*m)[0] - height[0]).abs() <= 0.06 * tall;
-            sheet.edges[*m].piece == piece && looks(*m) == looks(e) && in_middle(*m) && level
+            let straight = bulge(&sheet.edges[*m]).abs() < 0.06;
+            sheet.edges[*m].piece == piece && looks(*m) == looks(e) && in_middle(*m) && level && straight
         };
         let is_end = sheet.slender(piece) < 4.0 && (0..sheet.edges.len()).any(|m| beside(&m));
         if is_end { looks(e) } else { 0 }
