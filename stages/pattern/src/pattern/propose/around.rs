@@ -112,8 +112,11 @@ fn ruler(sheet: &Sheet, border: &Border, edges: &[usize], backwards: bool) -> Ru
     Ruler { at, crosses, low, total }
 }
 
-/// The pairs of corners that meet, from the starts to the ends, and their cost.
-fn path(a: &Ruler, b: &Ruler) -> (f64, Vec<(usize, usize)>) {
+/// The pairs of corners that meet, from the starts to the ends.
+type Steps = Vec<(usize, usize)>;
+
+/// The corners that meet, and their cost.
+fn path(a: &Ruler, b: &Ruler) -> (f64, Steps) {
     let (n, m) = (a.at.len(), b.at.len());
     let alone = |r: &Ruler, from: usize, to: usize| -> f64 {
         (from + 1..to).map(|k| ALONE[usize::from(r.crosses[k])]).sum()
@@ -170,7 +173,7 @@ pub(super) fn laid(sheet: &Sheet, border: &Border, a: &Stretch, b: &Stretch) -> 
         let seams: Vec<usize> = all.iter().copied().filter(|k| border.crosses[s.edges[*k]]).collect();
         if seams.is_empty() { all } else { seams }
     };
-    let mut best: Option<(f64, Vec<usize>, Vec<usize>, Vec<(usize, usize)>)> = None;
+    let mut best: Option<(f64, [Vec<usize>; 2], Steps)> = None;
     for i in starts(a) {
         let x = turned(a, i);
         let rx = ruler(sheet, border, &x, false);
@@ -180,11 +183,11 @@ pub(super) fn laid(sheet: &Sheet, border: &Border, a: &Stretch, b: &Stretch) -> 
             let ry = ruler(sheet, border, &y, true);
             let (cost, steps) = path(&rx, &ry);
             if cost.is_finite() && best.as_ref().is_none_or(|known| cost < known.0 - 1e-9) {
-                best = Some((cost, x.clone(), y, steps));
+                best = Some((cost, [x.clone(), y], steps));
             }
         }
     }
-    let (_, x, y, steps) = best?;
+    let (_, [x, y], steps) = best?;
     let (rx, ry) = (ruler(sheet, border, &x, false), ruler(sheet, border, &y, true));
     let m = y.len();
     let part = |w: &[(usize, usize)]| {
