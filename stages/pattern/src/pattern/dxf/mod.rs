@@ -45,7 +45,7 @@ const MOST_TOLD: usize = 6;
 #[stage(
     role = Reader,
     source = "AAMA DXF; ASTM D6673",
-    version = 2,
+    version = 3,
     example = "DxfPattern(file: \"tank.dxf\", size: \"M\")",
     contracts(Deterministic, ThreadInvariant)
 )]

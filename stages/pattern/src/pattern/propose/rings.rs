@@ -7,7 +7,6 @@
 //! edge of a band is sewn along a ring that is no hem. Lengths differ by the ease that tailors
 //! give. Cost: rings squared. Limits: tubes of one piece; a band around an open front is not found.
 
-use super::{Candidate, End, candidate};
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 
@@ -28,6 +27,40 @@ const LONG: f64 = 0.4;
 /// Notches that are farther apart than this say nothing, metres.
 const NOTCHES: f64 = 0.03;
 
+/// An edge is an end of a piece if the sine of its angle to the cross grain is at most this.
+const ACROSS: f64 = 0.45;
+/// An end also lies within this share of the piece's length from its lowest or highest point.
+const END: f64 = 0.12;
+/// A piece this many times longer than wide is a band.
+const SLENDER: f64 = 4.0;
+
+/// An edge with what is compared.
+struct Candidate {
+    length: f64,
+    /// Whether it ends its piece below.
+    low: bool,
+    band: bool,
+}
+
+fn candidate(p: &Piece, k: usize) -> Candidate {
+    let path = p.outer.path(k);
+    let length = path.length();
+    let corners = p.outer.points().0;
+    let least = corners.iter().fold(Point2::new(f64::MAX, f64::MAX), |a, q| a.inf(q));
+    let most = corners.iter().fold(Point2::new(f64::MIN, f64::MIN), |a, q| a.sup(q));
+    let [wide, tall] = [most.x - least.x, most.y - least.y];
+    let (start, end) = (path.at(0.0), path.at(length));
+    let near = path.points().iter().all(|q| (q.y - least.y).abs() <= END * tall);
+    let across = (end.y - start.y).abs() <= ACROSS * (end - start).norm();
+    Candidate { length, low: across && near, band: wide.max(tall) >= SLENDER * wide.min(tall) }
+}
+
+/// Whether one piece is the other's mirror image, by their names.
+fn mirror_of(a: &str, b: &str) -> bool {
+    let is = |x: &str, y: &str| x.strip_suffix("_mirrored") == Some(y);
+    is(a, b) || is(b, a)
+}
+
 /// An edge: the numbers of its piece and of it.
 type At = (usize, usize);
 
@@ -42,13 +75,13 @@ struct Ring {
 /// Seams that attach tubes and bands to rings, the surest first.
 pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(PatternSeam, String)> {
     let rings = rings(pieces, sewn);
-    let one = |&(i, k): &At| candidate(i, &pieces[i], vec![k]);
+    let one = |&(i, k): &At| candidate(&pieces[i], k);
     let around: Vec<&Ring> =
         rings.iter().filter(|r| r.edges.len() > 1 && r.hops.iter().any(|h| *h)).collect();
     // What ends a garment below, and what is no tube's, takes no sleeve.
-    let is_hem = |r: &Ring| r.edges.iter().all(|e| one(e).end == End::Low);
+    let is_hem = |r: &Ring| r.edges.iter().all(|e| one(e).low);
     let mut found: Vec<(f64, At, usize, Vec<At>)> = Vec::new();
-    let caps = rings.iter().filter(|r| r.edges.len() == 1 && one(&r.edges[0]).end != End::Low);
+    let caps = rings.iter().filter(|r| r.edges.len() == 1 && !one(&r.edges[0]).low);
     for cap in caps {
         for (n, ring) in around.iter().enumerate().filter(|(_, r)| !is_hem(r)) {
             let own = ring.edges.iter().any(|e| e.0 == cap.edges[0].0);
@@ -179,7 +212,7 @@ fn lowest(pieces: &[Piece], ring: &Ring) -> Vec<At> {
 /// The ring from where a piece meets its mirror image, else from where two pieces meet.
 fn opening(pieces: &[Piece], ring: &Ring) -> Vec<At> {
     let before = |k: usize| ring.edges[(k + ring.edges.len() - 1) % ring.edges.len()].0;
-    let twins = |k: &usize| super::mirror_of(&pieces[before(*k)].name, &pieces[ring.edges[*k].0].name);
+    let twins = |k: &usize| mirror_of(&pieces[before(*k)].name, &pieces[ring.edges[*k].0].name);
     let hops = || (0..ring.edges.len()).filter(|k| ring.hops[*k]);
     let apart = |k: &usize| before(*k) != ring.edges[*k].0;
     from(ring, hops().find(twins).or_else(|| hops().find(apart)).unwrap_or(0))

@@ -34,6 +34,7 @@ use toile_seamly::{Grade, LengthUnit, PatternHead, drafted};
 /// refused where a piece needs it.
 #[stage(
     role = Reader,
+    version = 2,
     source = "Seamly2D 2022; Valentina 1.0",
     example = "SeamlyPattern(file: \"skirt.sm2d\", measurements: \"body.smis\")",
     contracts(Deterministic, ThreadInvariant)

@@ -38,7 +38,7 @@ use toile_core::prelude::*;
 #[stage(
     role = Reader,
     source = "SVG 1.1; FreeSewing 4",
-    version = 2,
+    version = 3,
     example = "SvgPattern(file: \"teagan.svg\")",
     contracts(Deterministic, ThreadInvariant)
 )]
