@@ -2,10 +2,10 @@
 //!
 //! Method: [`score`] says how likely two edges are sewn to each other, [`around`] the same of rings
 //! and stretches of the free edges, and [`choose`] takes the likeliest first. What is left of
-//! sleeves, bands and seams in the middle [`rings`] and [`rule`] find by rule. Cost: edges squared a
-//! round, some hundredths of a second for a garment of twenty pieces. Limits: pieces are taken to be
-//! seen from outside, the grain up; a piece that is drawn upside down, a pocket and a second layer
-//! are not understood.
+//! sleeves, bands and seams in the middle [`rings`] and [`rule`] find by rule. Cost: edges squared
+//! a round, some hundredths of a second for a garment of twenty pieces. Limits: pieces are taken to
+//! be seen from outside, the grain up; a piece that is drawn upside down, a pocket and a second
+//! layer are not understood.
 
 mod around;
 mod border;

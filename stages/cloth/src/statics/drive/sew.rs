@@ -49,8 +49,8 @@ const FARTHEST: f64 = 0.05;
 /// How fast a wide gap must shrink; otherwise the round ends.
 const SHRINKS: Patience = Patience { steps: 12, share: 0.01 };
 
-/// Most vertices of a mesh on which seams are closed with cloth of every stage between stiff and the
-/// fabric's own, where the caller has another way of sewing: on a finer mesh they take half a
+/// Most vertices of a mesh on which seams are closed with cloth of every stage between stiff and
+/// the fabric's own, where the caller has another way of sewing: on a finer mesh they take half a
 /// minute.
 const MOST_SOFTENED: usize = 2000;
 

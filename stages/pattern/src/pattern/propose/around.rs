@@ -1,12 +1,12 @@
 //! What is sewn around: a sleeve into an armhole, a band along a waist, a collar along a neck, a
 //! gathered skirt to its band.
 //!
-//! Method: the free edges around what is sewn so far form rings. A ring, or a stretch of one between
-//! two sharp corners, is laid on another one so that as many corners as possible meet at the same
-//! share of the length: a shortest path over pairs of corners. Rings are turned until they fit best.
-//! A logistic score then says how likely it is, as for a pair of edges. Cost: the product of the
-//! corners of two stretches, for each place at which two rings may begin. Limits: rings of more than
-//! [`MOST`] edges are left out.
+//! Method: the free edges around what is sewn so far form rings. A ring, or a stretch of one
+//! between two sharp corners, is laid on another one so that as many corners as possible meet at
+//! the same share of the length: a shortest path over pairs of corners. Rings are turned until they
+//! fit best. A logistic score then says how likely it is, as for a pair of edges. Cost: the product
+//! of the corners of two stretches, for each place at which two rings may begin. Limits: rings of
+//! more than [`MOST`] edges are left out.
 
 use super::border::Border;
 use super::score::near;

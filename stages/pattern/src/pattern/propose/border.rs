@@ -34,8 +34,8 @@ impl Border {
         }
     }
 
-    /// Sews a run of edges to another, both counter-clockwise: the start of one meets the end of the
-    /// other.
+    /// Sews a run of edges to another, both counter-clockwise: the start of one meets the end of
+    /// the other.
     pub(super) fn sew(&mut self, sheet: &Sheet, a: &[usize], b: &[usize]) {
         let ([Some(&a0), Some(&a1)], [Some(&b0), Some(&b1)]) = ([a.first(), a.last()], [b.first(), b.last()])
         else {

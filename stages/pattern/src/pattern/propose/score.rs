@@ -260,9 +260,9 @@ pub(super) fn log_odds(f: &[f64; FEATURES]) -> f64 {
     f.iter().zip(WEIGHTS).map(|(x, w)| x * w).sum()
 }
 
-/// Fitted by `fit` to the tuned half of the files (see `scored`) and to nine labelled patterns of CAD
-/// programs, which are not in the repository, each for one and a half; the last, of notches, is set by
-/// hand.
+/// Fitted by `fit` to the tuned half of the files (see `scored`) and to nine labelled patterns of
+/// CAD programs, which are not in the repository, each for one and a half; the last, of notches, is
+/// set by hand.
 pub(super) const WEIGHTS: [f64; FEATURES] = [
     0.772, 3.258, 0.316, 1.396, 0.057, -1.792, 1.235, -0.004, 0.351, 0.347, -4.439, -3.567, -2.920, -4.805,
     0.290, -1.163, 8.203, -0.232, -2.046, -2.349, -0.270, -0.756, -0.263, 0.486, -0.249, 0.245, -0.804,

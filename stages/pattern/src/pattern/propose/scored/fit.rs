@@ -4,8 +4,8 @@
 //!         --ignored --nocapture
 //!
 //! Method: a conditional logit with a small penalty, by Newton's method (McFadden 1974): every free
-//! edge, and every stretch, chooses its partner or none, in states of the garment in which a part of
-//! the true seams, by lot, is sewn already. Prints the constants.
+//! edge, and every stretch, chooses its partner or none, in states of the garment in which a part
+//! of the true seams, by lot, is sewn already. Prints the constants.
 
 use super::super::border::Border;
 use super::super::score::Pair;
