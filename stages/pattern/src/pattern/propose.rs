@@ -27,6 +27,9 @@ use toile_core::prelude::*;
 
 /// Shorter edges are not told apart, metres.
 const SHORTEST: f64 = 0.004;
+/// Where an edge is longer than this, metres, nothing is proposed: the numbers are not of a garment,
+/// and points on a curve of that length take minutes to find.
+const LONGEST_EDGE: f64 = 100.0;
 /// Edges of a garment that are compared; with more nothing is proposed.
 const MOST: usize = 2_000;
 /// Edges that lie on each other to this are a slit, metres.
@@ -40,6 +43,10 @@ const GATHERED: f64 = 0.1;
 
 /// Seams, the surest first, each with its confidence and the reasons for it.
 pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
+    let is_garment = |p: &Piece| (0..p.outer.edges.len()).all(|k| p.outer.path(k).length() <= LONGEST_EDGE);
+    if !pieces.iter().all(is_garment) {
+        return Vec::new();
+    }
     let sheet = Sheet::of(pieces);
     if sheet.edges.len() > MOST {
         return Vec::new();

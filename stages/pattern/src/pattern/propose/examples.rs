@@ -70,3 +70,12 @@ fn pieces_without_size_and_garments_without_pieces_are_sewn_to_nothing() {
     let found = propose(&[speck.clone(), speck, half("front", 90.0)]);
     assert!(found.iter().all(|(s, _)| !s.name.contains("speck")), "{found:?}");
 }
+
+#[test]
+fn where_an_edge_is_longer_than_a_hundred_metres_nothing_is_proposed() {
+    let mut back = half("back", 130.0);
+    back.outer.corners.iter_mut().for_each(|p| p.x *= 1e9);
+    let curve = |at: f64| Point2::new(at * 1e9, 0.3);
+    back.outer.edges[1].curve = EdgeCurve::Cubic { controls: [curve(0.3), curve(0.2)] };
+    assert!(propose(&[half("front", 90.0), back]).is_empty());
+}
