@@ -27,8 +27,8 @@ use toile_core::prelude::*;
 
 /// Shorter edges are not told apart, metres.
 const SHORTEST: f64 = 0.004;
-/// Where an edge is longer than this, metres, nothing is proposed: the numbers are not of a garment,
-/// and points on a curve of that length take minutes to find.
+/// Where an edge is longer than this, metres, nothing is proposed: the numbers are not of a
+/// garment, and points on a curve of that length take minutes to find.
 const LONGEST_EDGE: f64 = 100.0;
 /// Edges of a garment that are compared; with more nothing is proposed.
 const MOST: usize = 2_000;
