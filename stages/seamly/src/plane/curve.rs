@@ -2,7 +2,7 @@
 
 use super::arc::DraftArc;
 use super::stroke::DraftStroke;
-use super::{ELLIPSE, angle, direction};
+use super::{ELLIPSE, accuracy, angle, direction};
 use kurbo::{Affine, CubicBez, Point, Vec2};
 
 /// A curve; where one stroke ends, the next one begins.
@@ -65,7 +65,7 @@ impl DraftCurve {
         );
         let mut at = centre + (Affine::rotate(turned.to_radians()) * ellipse_point(radii, start)).to_vec2();
         let mut strokes = Vec::new();
-        arc.to_cubic_beziers(ELLIPSE, |a, b, end| {
+        arc.to_cubic_beziers(accuracy(ELLIPSE, radii.hypot()), |a, b, end| {
             strokes.push(DraftStroke::Cubic(CubicBez::new(at, a, b, end)));
             at = end;
         });

@@ -2,7 +2,7 @@
 //!
 //! Method: a curve is a chain of cubic Bézier curves and arcs of circles, kept as they are drawn;
 //! an arc of an ellipse is turned into cubics that miss it by less than [`ELLIPSE`]. Lengths are
-//! those of `kurbo`, to [`ACCURACY`].
+//! those of `kurbo`, to [`ACCURACY`]; on a curve that is larger than 100 m both errors grow with it.
 
 mod arc;
 mod curve;
@@ -20,8 +20,16 @@ use kurbo::{Point, Vec2};
 
 /// The greatest error of a length, in the pattern's unit.
 const ACCURACY: f64 = 1e-9;
+/// The greatest error as a share of the size of a curve, where that is more: a number has 16 digits,
+/// and a search to more of them does not end.
+const SHARE: f64 = 1e-13;
 /// Cubics of an ellipse miss it by no more, in the pattern's unit.
 const ELLIPSE: f64 = 1e-6;
+
+/// The greatest error on a curve of a size, both in the pattern's unit.
+fn accuracy(otherwise: f64, size: f64) -> f64 {
+    otherwise.max(SHARE * size)
+}
 
 /// The direction of an angle, degrees, counter-clockwise from the x axis.
 pub(crate) fn direction(degrees: f64) -> Vec2 {

@@ -1,7 +1,7 @@
 //! One part of a curve.
 
-use super::ACCURACY;
 use super::arc::DraftArc;
+use super::{ACCURACY, accuracy};
 use kurbo::{
     Affine, CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, ParamCurveNearest, Point, Vec2,
 };
@@ -27,7 +27,7 @@ impl DraftStroke {
     /// Its length.
     pub fn length(&self) -> f64 {
         match self {
-            DraftStroke::Cubic(c) => c.arclen(ACCURACY),
+            DraftStroke::Cubic(c) => c.arclen(within(c)),
             DraftStroke::Arc(a) => a.length(),
         }
     }
@@ -38,7 +38,7 @@ impl DraftStroke {
         match self {
             _ if length <= 0.0 || whole <= 0.0 => 0.0,
             _ if length >= whole => 1.0,
-            DraftStroke::Cubic(c) => c.inv_arclen(length, ACCURACY),
+            DraftStroke::Cubic(c) => c.inv_arclen(length, within(c)),
             DraftStroke::Arc(_) => length / whole,
         }
     }
@@ -46,7 +46,7 @@ impl DraftStroke {
     /// The parameter at which it is nearest to a point.
     pub(super) fn nearest(&self, p: Point) -> f64 {
         match self {
-            DraftStroke::Cubic(c) => c.nearest(p, ACCURACY).t,
+            DraftStroke::Cubic(c) => c.nearest(p, within(c)).t,
             DraftStroke::Arc(a) => a.nearest(p),
         }
     }
@@ -91,7 +91,12 @@ impl DraftStroke {
     pub(crate) fn cubics(&self) -> Vec<CubicBez> {
         match self {
             DraftStroke::Cubic(c) => vec![*c],
-            DraftStroke::Arc(a) => a.cubics(ACCURACY),
+            DraftStroke::Arc(a) => a.cubics(accuracy(ACCURACY, a.radius)),
         }
     }
+}
+
+/// The greatest error of a length along a curve.
+fn within(c: &CubicBez) -> f64 {
+    accuracy(ACCURACY, (c.p1 - c.p0).hypot() + (c.p2 - c.p1).hypot() + (c.p3 - c.p2).hypot())
 }

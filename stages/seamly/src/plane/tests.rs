@@ -106,3 +106,15 @@ fn directions_along_the_axes_are_exact() {
     }
     assert!((angle(direction(213.0)) - 213.0).abs() < 1e-9);
 }
+
+#[test]
+fn a_curve_of_any_size_is_cut_at_once() {
+    // An ease of -2^63 cm: the fuzzing found that such a curve took minutes.
+    let far = -2.3e18;
+    let c = CubicBez::new(p(far, -3.0), p(far, -18.0), p(far + 40.0, 1e17), p(far / 3.0, far));
+    let curve = DraftCurve::single(DraftStroke::Cubic(c), "A", "B");
+    let half = 0.5 * curve.length();
+    let [one, _] = curve.cut(half, "C");
+    assert!((one.length() / half - 1.0).abs() < 1e-9);
+    assert!(curve.nearest(p(0.0, 0.0)).0.is_finite());
+}

@@ -6,7 +6,8 @@
 //! the same share of the length: a shortest path over pairs of corners. Rings are turned until they
 //! fit best. A logistic score then says how likely it is, as for a pair of edges. Cost: the product
 //! of the corners of two stretches, for each place at which two rings may begin. Limits: rings of
-//! more than [`MOST`] edges are left out.
+//! more than [`MOST`] edges are left out, and the shortest stretches of garments that have more than
+//! [`MOST_STRETCHES`] or ask for more than [`MOST_WORK`].
 
 use super::border::Border;
 use super::score::near;
@@ -15,6 +16,10 @@ use std::f64::consts::LN_2;
 
 /// Edges of a stretch.
 const MOST: usize = 48;
+/// Stretches of a garment.
+const MOST_STRETCHES: usize = 100;
+/// Pairs of corners that are looked at in a round, on all stretches together.
+const MOST_WORK: usize = 2_000_000;
 /// Corners that are passed by between two that meet.
 const PASSED: usize = 6;
 /// A corner that meets none costs this share of the length, where a seam ends there this.
@@ -151,30 +156,58 @@ fn path(a: &Ruler, b: &Ruler) -> (f64, Steps) {
     (cost[n * m - 1], steps)
 }
 
-/// Two stretches laid on each other in the best way; none where that cannot be.
-pub(super) fn laid(sheet: &Sheet, border: &Border, a: &Stretch, b: &Stretch) -> Option<Laid> {
+/// All pairs of stretches that can be laid on each other, the longest first.
+pub(super) fn all_laid(sheet: &Sheet, border: &Border, shortest: f64) -> Vec<Laid> {
+    let all = stretches(border);
+    let lengths: Vec<f64> = all.iter().map(|s| length(sheet, &s.edges)).collect();
+    let mut order: Vec<usize> = (0..all.len()).filter(|k| lengths[*k] >= shortest).collect();
+    order.sort_by(|x, y| lengths[*y].total_cmp(&lengths[*x]));
+    order.truncate(MOST_STRETCHES);
+    let (mut work, mut out) = (0, Vec::new());
+    for j in 0..order.len() {
+        for i in 0..j {
+            let (a, b) = (&all[order[i].min(order[j])], &all[order[i].max(order[j])]);
+            if !may_meet(sheet, a, b) {
+                continue;
+            }
+            let turns = starts(border, a).len() * if b.ring { b.edges.len() } else { 1 };
+            work += turns * (a.edges.len() + 1) * (b.edges.len() + 1);
+            if work > MOST_WORK {
+                return out;
+            }
+            out.extend(laid(sheet, border, a, b));
+        }
+    }
+    out
+}
+
+fn may_meet(sheet: &Sheet, a: &Stretch, b: &Stretch) -> bool {
     let ratio = (length(sheet, &a.edges) / length(sheet, &b.edges).max(1e-9)).ln();
     // The left half of a garment fits its right half in any case.
     let images = a.edges.iter().filter(|e| sheet.image[**e].is_some_and(|i| b.edges.contains(&i))).count();
-    if 3 * images >= a.edges.len().max(2) {
-        return None;
-    }
+    let twins = 3 * images >= a.edges.len().max(2);
     let shares = a.edges.iter().any(|e| b.edges.contains(e));
-    if shares || ratio.abs() > LONGEST.ln() || a.edges.len() + b.edges.len() < 3 {
+    !twins && !shares && ratio.abs() <= LONGEST.ln() && a.edges.len() + b.edges.len() >= 3
+}
+
+/// The edges with which a stretch may begin: those of a ring after a seam, where it has seams. Of
+/// more than [`PASSED`] corners in a row one meets another.
+fn starts(border: &Border, s: &Stretch) -> Vec<usize> {
+    if !s.ring {
+        return vec![0];
+    }
+    let seams: Vec<usize> = (0..s.edges.len()).filter(|k| border.crosses[s.edges[*k]]).collect();
+    if seams.is_empty() { (0..s.edges.len().min(PASSED + 1)).collect() } else { seams }
+}
+
+/// Two stretches laid on each other in the best way; none where that cannot be.
+pub(super) fn laid(sheet: &Sheet, border: &Border, a: &Stretch, b: &Stretch) -> Option<Laid> {
+    if !may_meet(sheet, a, b) {
         return None;
     }
     let turned = |s: &Stretch, by: usize| [&s.edges[by..], &s.edges[..by]].concat();
-    // Rings begin where a seam ends, where there is such a corner.
-    let starts = |s: &Stretch| -> Vec<usize> {
-        if !s.ring {
-            return vec![0];
-        }
-        let all: Vec<usize> = (0..s.edges.len()).collect();
-        let seams: Vec<usize> = all.iter().copied().filter(|k| border.crosses[s.edges[*k]]).collect();
-        if seams.is_empty() { all } else { seams }
-    };
     let mut best: Option<(f64, [Vec<usize>; 2], Steps)> = None;
-    for i in starts(a) {
+    for i in starts(border, a) {
         let x = turned(a, i);
         let rx = ruler(sheet, border, &x, false);
         let all_b: Vec<usize> = if b.ring { (0..b.edges.len()).collect() } else { vec![0] };

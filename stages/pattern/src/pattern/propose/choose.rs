@@ -195,20 +195,9 @@ fn marginals(sheet: &Sheet, odds: &BTreeMap<(usize, usize), f64>) -> BTreeMap<(u
 }
 
 fn stretch_offers(sheet: &Sheet, border: &Border, shortest: f64) -> Vec<Offer> {
-    let all = around::stretches(border);
-    let long = |s: &around::Stretch| s.edges.iter().map(|e| sheet.edges[*e].length).sum::<f64>() >= shortest;
-    let all: Vec<_> = all.into_iter().filter(long).collect();
-    let mut found: Vec<(f64, around::Laid)> = Vec::new();
-    for i in 0..all.len() {
-        for j in i + 1..all.len() {
-            if let Some(laid) = around::laid(sheet, border, &all[i], &all[j]) {
-                let z = around::log_odds(&laid.features);
-                if z > -4.0 {
-                    found.push((z, laid));
-                }
-            }
-        }
-    }
+    let all = around::all_laid(sheet, border, shortest).into_iter();
+    let found: Vec<(f64, around::Laid)> =
+        all.map(|laid| (around::log_odds(&laid.features), laid)).filter(|(z, _)| *z > -4.0).collect();
     let edges: Vec<BTreeSet<usize>> =
         found.iter().map(|(_, l)| l.parts.iter().flatten().flatten().copied().collect()).collect();
     // Exchangeable stretches are no rivals: two sleeves of one form and two armholes of one form.
@@ -219,9 +208,10 @@ fn stretch_offers(sheet: &Sheet, border: &Border, shortest: f64) -> Vec<Offer> {
         all.sort_unstable();
         all
     };
+    let forms: Vec<Vec<usize>> = found.iter().map(|(_, laid)| form(laid)).collect();
     let mut out = Vec::new();
     for (i, (z, laid)) in found.iter().enumerate() {
-        let other = (0..found.len()).filter(|j| *j != i && form(&found[*j].1) != form(laid));
+        let other = (0..found.len()).filter(|j| *j != i && forms[*j] != forms[i]);
         let other: Vec<usize> = other.collect();
         // Rivals for one side, and for the other.
         let rest = [0, 1].map(|side| {

@@ -79,3 +79,21 @@ fn where_an_edge_is_longer_than_a_hundred_metres_nothing_is_proposed() {
     back.outer.edges[1].curve = EdgeCurve::Cubic { controls: [curve(0.3), curve(0.2)] };
     assert!(propose(&[half("front", 90.0), back]).is_empty());
 }
+
+#[test]
+fn a_drawing_of_many_short_edges_is_answered() {
+    // Twenty discs of ninety edges each, and two stars: any edge fits any other one.
+    let round = |sides: usize, radii: [f64; 2]| -> Vec<[f64; 2]> {
+        let at = |k: usize| {
+            let (sin, cos) = (k as f64 / sides as f64 * std::f64::consts::TAU).sin_cos();
+            [cos * radii[k % 2], sin * radii[k % 2]]
+        };
+        (0..sides).map(at).collect()
+    };
+    let mut pieces: Vec<Piece> =
+        (0..20).map(|k| piece(&format!("disc_{k}"), &round(90, [200.0, 200.0]))).collect();
+    for k in 0..2 {
+        pieces.push(piece(&format!("star_{k}"), &round(48, [200.0, 120.0])));
+    }
+    assert!(propose(&pieces).len() < 1_000);
+}
