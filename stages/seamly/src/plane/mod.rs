@@ -20,8 +20,8 @@ use kurbo::{Point, Vec2};
 
 /// The greatest error of a length, in the pattern's unit.
 const ACCURACY: f64 = 1e-9;
-/// The greatest error as a share of the size of a curve, where that is more: a number has 16 digits,
-/// and a search to more of them does not end.
+/// The greatest error as a share of the size of a curve, where that is more: a number has 16
+/// digits, and a search to more of them does not end.
 const SHARE: f64 = 1e-13;
 /// Cubics of an ellipse miss it by no more, in the pattern's unit.
 const ELLIPSE: f64 = 1e-6;

@@ -17,6 +17,8 @@ pub(super) struct Limb {
     pub(super) root: Point3,
     /// Unit direction of the axis.
     pub(super) axis: Vector3,
+    /// From the root to the wrist, metres.
+    pub(super) length: f64,
     /// Unit direction forward, at right angles to the axis.
     pub(super) front: Vector3,
     /// Unit direction up, at right angles to both.
@@ -34,7 +36,8 @@ impl Limb {
     fn arm(body: &Body, hand: Hand) -> Option<Limb> {
         let at = |part: &str| body.landmark(part, hand);
         let root = nalgebra::center(&at("shoulder")?, &at("armpit")?);
-        let axis = (at("wrist")? - root).try_normalize(1e-6)?;
+        let arm = at("wrist")? - root;
+        let axis = arm.try_normalize(1e-6)?;
         let forward = Vector3::z();
         let front = (forward - axis * axis.dot(&forward)).try_normalize(1e-6)?;
         let upward = Vector3::y();
@@ -51,7 +54,7 @@ impl Limb {
             (along > 0.0 && off < REACH).then_some((along, off))
         };
         let skin = body.positions.iter().filter_map(near).collect();
-        Some(Limb { hand, root, axis, front, up, skin })
+        Some(Limb { hand, root, axis, length: arm.norm(), front, up, skin })
     }
 
     /// Whether a point is on the arm's side of the body.

@@ -5,6 +5,7 @@
 //! Sleeves have none: flat beside the arm, they sew worse in all garments that were tried.
 
 use super::limb::Limb;
+use super::narrow::Narrow;
 use super::{PiecePlaces, legs, tubes};
 use crate::place::sew::Offsets;
 use toile_core::prelude::*;
@@ -21,40 +22,57 @@ pub(super) struct Moving<'a> {
     pub(super) clearance: f64,
 }
 
-/// Places, and what was moved, in words.
-type Moved = (PiecePlaces, Vec<String>);
+/// Pieces that were moved.
+pub(super) struct Moved {
+    pub(super) places: PiecePlaces,
+    /// What was moved, in words.
+    pub(super) told: Vec<String>,
+    /// What is narrowest beside the arm that it goes around: the names of the pieces, and where.
+    pub(super) narrowest: Option<(String, Narrow)>,
+}
+
+/// Places without a move that was made, in words.
+pub(super) type Others = Vec<(&'static str, PiecePlaces)>;
 
 impl Moving<'_> {
     /// The pieces moved to legs and arms; and, where legs were moved, the places without that, in
     /// words.
-    pub(super) fn moved_and_others(&self, places: &PiecePlaces) -> (Moved, Vec<(&'static str, PiecePlaces)>) {
-        let (swung, mut told) = self.swung(places.clone());
+    pub(super) fn moved_and_others(&self, places: &PiecePlaces) -> (Moved, Others) {
+        let (swung, told) = self.swung(places.clone());
         let others = match told.is_empty() {
             true => Vec::new(),
-            false => vec![("with the legs where the pattern puts them", self.bent(places.clone()).0)],
+            false => vec![(
+                "with the legs where the pattern puts them",
+                self.bent(places.clone(), Vec::new()).places,
+            )],
         };
-        let (places, of_arms) = self.bent(swung);
-        told.extend(of_arms);
-        ((places, told), others)
+        (self.bent(swung, told), others)
     }
 
     /// Halves of legs that miss the body's, swung before them.
-    fn swung(&self, mut places: PiecePlaces) -> Moved {
+    fn swung(&self, mut places: PiecePlaces) -> (PiecePlaces, Vec<String>) {
         let told = legs::swing(self.pattern, self.body, &mut places, self.seams, self.offsets);
         (places, told)
     }
 
     /// Sleeves and cuffs, bent around the arms.
-    fn bent(&self, mut places: PiecePlaces) -> Moved {
-        let mut told = Vec::new();
+    fn bent(&self, mut places: PiecePlaces, mut told: Vec<String>) -> Moved {
+        let mut narrowest: Option<(String, Narrow)> = None;
         for limb in Limb::arms(self.body) {
             let mine = match self.sleeves {
                 Some(all) => all.iter().filter(|s| s.1 == limb.hand).map(|s| s.0.clone()).collect(),
                 None => tubes::around(&limb, self.pattern, &places),
             };
-            let sewn = tubes::bend(&limb, &mine, &mut places, self.seams, self.offsets, self.clearance);
-            told.extend(sewn);
+            let done =
+                tubes::bend(&limb, self.body, &mine, &mut places, self.seams, self.offsets, self.clearance);
+            for tube in done {
+                told.push(tube.told);
+                let is_more = |n: &Narrow| narrowest.as_ref().is_none_or(|m| n.stretch() > m.1.stretch());
+                if let Some(narrow) = tube.narrow.filter(is_more) {
+                    narrowest = Some((tube.names, narrow));
+                }
+            }
         }
-        (places, told)
+        Moved { places, told, narrowest }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::PiecePlaces;
 use super::limb::Limb;
+use super::narrow::{ArmGirths, Narrow, TubeLoop, TubePlace, loops, narrowest};
 use crate::place::sew::Offsets;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -33,17 +34,29 @@ pub(super) fn around(limb: &Limb, pattern: &Pattern, places: &PiecePlaces) -> Ve
     mine.map(|(name, _)| name.clone()).collect()
 }
 
-/// Bends pieces around the arm; says what was bent.
+/// Pieces that were bent around an arm together.
+pub(super) struct Bent {
+    /// Their names.
+    pub(super) names: String,
+    /// What was done, in words.
+    pub(super) told: String,
+    /// Where they are narrowest beside the arm, if that is known.
+    pub(super) narrow: Option<Narrow>,
+}
+
+/// Bends pieces around the arm.
 pub(super) fn bend(
     limb: &Limb,
+    body: &Body,
     mine: &[String],
     places: &mut PiecePlaces,
     seams: &[GarmentSeam],
     offsets: &Offsets,
     clearance: f64,
-) -> Vec<String> {
+) -> Vec<Bent> {
     let sewn = sewn(seams, offsets);
-    let mut told = Vec::new();
+    let mut done = Vec::new();
+    let girths = ArmGirths::of(limb, body);
     for tube in tubes(limb, mine, places, &sewn) {
         let axis = file_axis(limb, &tube, places, seams, offsets);
         let mut sides: Vec<ArmPiece> =
@@ -56,6 +69,7 @@ pub(super) fn bend(
         let (from, to) = (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
         let radius = (girth / TAU).max(limb.radius(from, to) + clearance);
         let is_ring = sides.len() == 1 && sewn.contains(&(tube[0].clone(), tube[0].clone()));
+        let around = loops_around(&sides, is_ring, seams, offsets);
         for s in &mut sides {
             // What goes all around has its middle over the arm; halves before and behind it.
             let centre = match (is_ring, s.is_front) {
@@ -70,9 +84,48 @@ pub(super) fn bend(
             });
             places.insert(s.name.clone(), bent.collect());
         }
-        told.push(format!("{} around the {} arm, radius {:.0} mm", tube.join(", "), limb.hand, radius * 1e3));
+        let names = tube.join(", ");
+        let told = format!("{names} around the {} arm, radius {:.0} mm", limb.hand, radius * 1e3);
+        done.push(Bent { names, told, narrow: narrowest(&girths, &around) });
     }
-    told
+    done
+}
+
+/// Loops around one piece that is sewn to itself, or two that are sewn to each other on both sides
+/// of the arm.
+fn loops_around(
+    sides: &[ArmPiece],
+    is_ring: bool,
+    seams: &[GarmentSeam],
+    offsets: &Offsets,
+) -> Vec<TubeLoop> {
+    let at = |s: &ArmPiece, v: u32| {
+        let (first, panel) = offsets.get(s.name.as_str())?;
+        let own = (v as usize).checked_sub(*first)?;
+        Some((*panel.positions.get(own)?, *s.flat.get(own)?))
+    };
+    let pairs = || seams.iter().flat_map(|s| &s.pairs).filter(|[a, b]| a != b);
+    match sides {
+        [own] if is_ring => {
+            let around = |[a, b]: &[u32; 2]| {
+                let ((p, [x, _]), (q, [y, _])) = (at(own, *a)?, at(own, *b)?);
+                Some(TubeLoop { girth: (p - q).norm(), along: f64::midpoint(x, y) })
+            };
+            pairs().filter_map(around).collect()
+        }
+        [one, other] => {
+            let mut found = [Vec::new(), Vec::new()];
+            let both = |[a, b]: &[u32; 2]| {
+                [(*a, *b), (*b, *a)].into_iter().find_map(|(a, b)| Some((at(one, a)?, at(other, b)?)))
+            };
+            for ((p, [x, across]), (q, [y, _])) in pairs().filter_map(both) {
+                let place = TubePlace { cloth: [p, q], along: f64::midpoint(x, y) };
+                found[usize::from(across > one.middle)].push(place);
+            }
+            loops(&found)
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn is_of_arm(pattern: &Pattern, name: &str) -> bool {
