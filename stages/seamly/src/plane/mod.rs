@@ -2,7 +2,8 @@
 //!
 //! Method: a curve is a chain of cubic Bézier curves and arcs of circles, kept as they are drawn;
 //! an arc of an ellipse is turned into cubics that miss it by less than [`ELLIPSE`]. Lengths are
-//! those of `kurbo`, to [`ACCURACY`]; on a curve that is larger than 100 m both errors grow with it.
+//! those of `kurbo`, to [`ACCURACY`]; on a curve that is larger than 100 m both errors grow with
+//! it.
 
 mod arc;
 mod curve;

@@ -6,8 +6,8 @@
 //! the same share of the length: a shortest path over pairs of corners. Rings are turned until they
 //! fit best. A logistic score then says how likely it is, as for a pair of edges. Cost: the product
 //! of the corners of two stretches, for each place at which two rings may begin. Limits: rings of
-//! more than [`MOST`] edges are left out, and the shortest stretches of garments that have more than
-//! [`MOST_STRETCHES`] or ask for more than [`MOST_WORK`].
+//! more than [`MOST`] edges are left out, and the shortest stretches of garments that have more
+//! than [`MOST_STRETCHES`] or ask for more than [`MOST_WORK`].
 
 use super::border::Border;
 use super::score::near;

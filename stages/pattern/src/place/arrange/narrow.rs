@@ -1,12 +1,12 @@
 //! Cloth around an arm beside the arm's own girth.
 //!
-//! Method: the girth of a tube of two pieces is that of its shortest loop: straight across one piece
-//! from a place on one seam to a place on the other seam, and back across the other piece. The
-//! arm's girth is that of a tape around its skin at the same distance from the shoulder (ISO
+//! Method: the girth of a tube of two pieces is that of its shortest loop: straight across one
+//! piece from a place on one seam to a place on the other seam, and back across the other piece.
+//! The arm's girth is that of a tape around its skin at the same distance from the shoulder (ISO
 //! 8559-1: a tape spans hollows). Since a sleeve slides along the arm, the arm's least girth within
 //! [`SLIDES`] counts. Cost: a pass over the body's triangles each centimetre of the arm. Limits: an
-//! arm is taken to be straight from the shoulder to the wrist; tubes of more than two pieces are not
-//! measured.
+//! arm is taken to be straight from the shoulder to the wrist; tubes of more than two pieces are
+//! not measured.
 
 use super::limb::Limb;
 use toile_body::slice;
