@@ -49,6 +49,7 @@ const BESIDE: &[(&str, &str)] = &[
 const UNSEEN: &[&str] = &[
     "Arrange.bend",
     "Arrange.clearance",
+    "Arrange.max_tight",
     "Auto.holes",
     "Auto.touch",
     "Auto.garment",
