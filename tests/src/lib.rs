@@ -59,7 +59,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 23] = [
+pub const PIPELINES: [&str; 24] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -73,6 +73,7 @@ pub const PIPELINES: [&str; 23] = [
     "dress.ron",
     "onepiece.ron",
     "pleats.ron",
+    "outfit.ron",
     "photo_longsleeve.ron",
     "photo_skirt.ron",
     "photo_dress.ron",

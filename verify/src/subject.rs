@@ -100,7 +100,7 @@ pub(crate) fn panel(
     fabric: &Arc<Fabric>,
 ) -> GarmentPanel {
     let (name, fabric) = (name.to_owned(), fabric.clone());
-    GarmentPanel { name, vertices, triangles, boundary: Vec::new(), photo_px: Vec::new(), fabric }
+    GarmentPanel { name, vertices, triangles, boundary: Vec::new(), photo_px: Vec::new(), fabric, layer: 0 }
 }
 
 /// The garment with boundaries and joined vertices, as they follow from its positions and

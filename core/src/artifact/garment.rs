@@ -21,6 +21,8 @@ pub struct GarmentPanel {
     pub photo_px: Vec<Point2>,
     /// What it is made of.
     pub fabric: Arc<Fabric>,
+    /// Panels of a higher layer are worn outside those of a lower one.
+    pub layer: u32,
 }
 
 /// How far a seam has come.

@@ -163,6 +163,7 @@ pub fn garment() -> Garment {
         boundary: panel.boundary.iter().map(|v| v + (k * n) as u32).collect(),
         photo_px: panel.photo_px.clone(),
         fabric: fabric.clone(),
+        layer: 0,
     };
     let other = |name: &str| match name {
         "side_left" => "side_right",

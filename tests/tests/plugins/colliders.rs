@@ -51,6 +51,7 @@ pub(crate) fn garment() -> Garment {
             boundary: vec![0, 1, 2],
             photo_px: vec![],
             fabric: Arc::new(fabric),
+            layer: 0,
         }],
         positions,
         rest,

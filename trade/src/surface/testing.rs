@@ -28,6 +28,7 @@ fn garment(rest: Vec<Point2>, positions: Vec<Point3>, triangles: Vec<[u32; 3]>) 
         boundary: vec![0, 1, 2],
         photo_px: Vec::new(),
         fabric: Arc::new(fabric),
+        layer: 0,
     };
     Garment {
         velocities: vec![Vector3::zeros(); n],

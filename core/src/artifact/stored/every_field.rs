@@ -187,6 +187,7 @@ fn of_garments() {
             boundary: vec![],
             photo_px: vec![p(1.0, 2.0)],
             fabric: Arc::new(Fabric { damping: 2.0, ..fabric() }),
+            layer: 1,
         }
     );
     let made_of = |f| GarmentPanel { fabric: Arc::new(f), ..garment().panels[0].clone() };

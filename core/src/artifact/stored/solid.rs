@@ -90,13 +90,15 @@ fn starts_of(r: &Reader<'_>) -> Result<Vec<GarmentStart>, String> {
 }
 
 fn panel_fields(p: &GarmentPanel) -> Record<'_> {
-    Record::new()
+    let record = Record::new()
         .text("name", &p.name)
         .owned("vertices", [span(&p.vertices)])
         .owned("triangles", [span(&p.triangles)])
         .list("boundary", &p.boundary)
         .list("photo_px", &p.photo_px)
-        .records("fabric", [p.fabric.fields()])
+        .records("fabric", [p.fabric.fields()]);
+    // Most garments have one layer, and the bytes that they had before there were more.
+    if p.layer == 0 { record } else { record.count("layer", p.layer as usize) }
 }
 
 fn panel_of(r: &Reader<'_>) -> Result<GarmentPanel, String> {
@@ -108,6 +110,10 @@ fn panel_of(r: &Reader<'_>) -> Result<GarmentPanel, String> {
         boundary: r.list("boundary")?,
         photo_px: r.list("photo_px")?,
         fabric: Arc::new(Stored::from_record(&fabric)?),
+        layer: match r.find("layer") {
+            Some(_) => u32::try_from(r.count("layer")?).map_err(|e| format!("the field `layer`: {e}"))?,
+            None => 0,
+        },
     })
 }
 

@@ -90,6 +90,7 @@ pub(in crate::artifact) fn garment() -> Garment {
             boundary: vec![0, 1, 2],
             photo_px: vec![],
             fabric: Arc::new(fabric()),
+            layer: 0,
         }],
         seams: vec![GarmentSeam {
             name: "a + b".into(),

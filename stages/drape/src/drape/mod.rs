@@ -5,6 +5,7 @@ mod asleep;
 mod by_place;
 mod central_differences;
 mod implicit_euler;
+mod layers;
 mod mixed_precision;
 mod models;
 mod motion;

@@ -10,6 +10,7 @@
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
 use super::by_place;
+use super::layers::{Clothes, Dressed, Single, layers};
 use super::mixed_precision::{self, FactorPrecision};
 use super::models::{BendingModel, MembraneModel, models};
 use super::motion::engine_air;
@@ -31,6 +32,9 @@ use toile_core::Known;
 use toile_core::decide::Decision;
 use toile_core::prelude::*;
 use toile_core::{ByPlace, Node};
+
+/// The time that a solve is left with where those before it took all, seconds.
+const LEAST_TIME: f64 = 0.001;
 
 /// Which steps prove that cloth is at rest. Each step begins standing, so that what nothing holds
 /// gains speed in it.
@@ -59,6 +63,9 @@ pub enum ProofSteps {
 /// is followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state
 /// of rest; a scene with wind in its last phase is refused, for wind has no potential: take
 /// `ImplicitEuler`.
+///
+/// Garments that are worn over each other, as `Outfit` reads them, are sewn from the innermost:
+/// each on the body and what it wears already. Then all come to rest together, cloth on cloth.
 ///
 /// Behind another `StaticEquilibrium` it takes that one's parameters where it is given none. A
 /// prepared scene (`Scene`) is solved to its last vertex: left out, `speed` is 1 mm/s behind it,
@@ -155,6 +162,53 @@ impl StaticEquilibrium {
     ) -> Result<Garment, StageError> {
         garment.check_solvable()?;
         engine::check_response(collider, "StaticEquilibrium")?;
+        let layers = layers(garment);
+        if layers.len() > 1 && !self.from_here {
+            return self.one_over_the_other(&layers, garment, collider, phases, cx);
+        }
+        self.over(None, garment, collider, phases, cx)
+    }
+
+    /// Sews garments that are worn over each other, from the innermost, and lets them come to rest
+    /// together.
+    fn one_over_the_other(
+        &self,
+        layers: &[u32],
+        garment: &Garment,
+        collider: Option<&Collider>,
+        phases: Option<&Phases>,
+        cx: &Context,
+    ) -> Result<Garment, StageError> {
+        let clock = Instant::now();
+        let left = || (self.time_limit - clock.elapsed().as_secs_f64()).max(LEAST_TIME);
+        let mut whole = garment.clone();
+        let mut on_body = vec![1.0; whole.panels.len()];
+        for layer in layers {
+            let clothes = (layer != &layers[0]).then(|| Clothes::under(*layer, &whole));
+            let single = Single::of(*layer, &whole);
+            let single_solver = StaticEquilibrium { time_limit: left(), ..self.clone() };
+            let rested = single_solver.over(clothes.as_ref(), &single.garment, collider, phases, cx)?;
+            single.put_back(&rested, &mut whole);
+            let own = whole.panels.iter().zip(&mut on_body).filter(|(p, _)| p.layer == *layer);
+            own.zip(&rested.status.on_body).for_each(|((_, share), found)| *share = *found);
+        }
+        whole.starts.clear();
+        whole.status.on_body = on_body;
+        weld_seams(&mut whole);
+        // What each could not close or resolve alone is resolved together, from the coarsest mesh.
+        let last = StaticEquilibrium { time_limit: left(), ..self.clone() };
+        last.over(None, &whole, collider, phases, cx)
+    }
+
+    /// Sews a garment over what the body wears already, and lets it come to rest.
+    fn over(
+        &self,
+        clothes: Option<&Clothes>,
+        garment: &Garment,
+        collider: Option<&Collider>,
+        phases: Option<&Phases>,
+        cx: &Context,
+    ) -> Result<Garment, StageError> {
         let gravity =
             phases.and_then(Phases::last_gravity).unwrap_or_else(|| Vector3::new(0.0, -self.gravity, 0.0));
         let card = collider.map(|c| c.scheme.card());
@@ -166,7 +220,7 @@ impl StaticEquilibrium {
         };
         let scene = scene_of(garment, &setting)?;
         let friction = card.map_or(0.0, |c| c.friction);
-        let surface = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
+        let surface = collider.map(|c| Dressed { body: SchemeSurface::new(c.scheme.as_ref()), clothes });
         let engine_collider = surface.as_ref().map(|surface| EngineCollider { surface, friction });
         let mut progress =
             SolverProgress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
@@ -194,7 +248,11 @@ impl StaticEquilibrium {
             &stopper,
             &mut |level| progress.tell(level),
         );
-        if let (true, Some(collider), Some(why)) = (self.sew_through, collider, why_again(&result)) {
+        // What is worn over cloth dips into it between its points; that is resolved later.
+        let is_alone = clothes.is_none() || result.is_err();
+        if let (true, Some(collider), Some(why)) =
+            (self.sew_through && is_alone, collider, why_again(&result))
+        {
             let thin = thin_of(collider);
             let around: Vec<&dyn CollisionSurface> =
                 thin.iter().map(|f| f as &dyn CollisionSurface).collect();

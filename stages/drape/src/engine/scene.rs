@@ -37,7 +37,7 @@ pub fn scene_of(garment: &Garment, setting: &SceneSetting) -> Result<Scene, Stag
     for p in &garment.panels {
         let material = engine_fabric(&p.fabric, setting.thickness).map_err(|e| cloth_error(&e))?;
         let panel = Panel::new(p.name.clone(), p.vertices.clone(), p.triangles.clone());
-        panels.push(Panel { material: Some(material), ..panel });
+        panels.push(Panel { material: Some(material), layer: p.layer, ..panel });
     }
     let material = panels.first().and_then(|p| p.material.clone());
     Ok(Scene {
@@ -201,6 +201,7 @@ fn garment_panel(k: usize, scene: &Scene) -> GarmentPanel {
         boundary: outline(&scene.triangles[p.triangles.clone()]),
         photo_px: Vec::new(),
         fabric: Arc::new(fabric_of(&p.name, scene.fabric_of(k))),
+        layer: p.layer,
     }
 }
 

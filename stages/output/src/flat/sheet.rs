@@ -264,6 +264,7 @@ pub(super) fn assembled(pieces: &SurfacePieces, parts: Vec<PieceDetails>) -> Gar
             boundary,
             photo_px: part.photo_px,
             fabric: part.fabric,
+            layer: 0,
         });
     }
     let seam = |s: &SurfaceSeam| GarmentSeam {

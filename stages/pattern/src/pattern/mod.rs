@@ -7,6 +7,7 @@ mod faults;
 mod follow;
 mod garment_code;
 mod marks;
+mod outfit;
 mod propose;
 mod seamly;
 mod seams;
@@ -18,6 +19,7 @@ mod unit;
 
 pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
+pub use outfit::Outfit;
 pub use seamly::SeamlyPattern;
 pub use svg::SvgPattern;
 pub use unit::DrawingUnit;
@@ -28,6 +30,7 @@ use toile_core::{Context, ErrorCode, Registry, Remarks, StageError};
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<GarmentCode>();
+    registry.add::<Outfit>();
     registry.add::<DxfPattern>();
     registry.add::<SeamlyPattern>();
     registry.add::<SvgPattern>();

@@ -16,6 +16,7 @@
 //! sews them.
 
 mod boards;
+mod layers;
 mod legs;
 mod limb;
 mod moving;
@@ -120,6 +121,7 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
+        layers::spread(&worn, &mut places, body);
         let finished = |mut places: PiecePlaces| -> Result<(Vec<Point3>, Vec<String>), StageError> {
             for (name, of) in &folded {
                 if let Some(places) = places.get_mut(name) {
@@ -142,12 +144,15 @@ impl Arrange {
             false => (Moved { places: places.clone(), told: Vec::new(), narrowest: None }, Vec::new()),
         };
         let named = sleeves.iter().flatten().map(|s| s.0.clone()).collect::<Vec<_>>();
-        let by = boards::raise(&boards::boards(&worn, &named, &places, &flat), &seams, body);
         let mut others = Vec::new();
-        if by > 0.0 {
+        let raised = raised(&worn, &named, &places, &flat, &seams, body);
+        if raised.by > 0.0 {
             others.push(("as high as the pattern puts it", moved(&places).0.places));
-            places.values_mut().flatten().for_each(|p| p.y += by);
-            cx.note(format!("raised by {:.0} mm, so that its shoulder seams clear the shoulders", by * 1e3));
+            places = raised.places;
+            cx.note(format!(
+                "raised by {:.0} mm, so that its shoulder seams clear the shoulders",
+                raised.by * 1e3
+            ));
         }
         let (Moved { places, told, narrowest }, unmoved) = moved(&places);
         if let Some((names, narrow)) = narrowest {
@@ -161,7 +166,9 @@ impl Arrange {
         let (points, laid) = finished(places)?;
         told.into_iter().chain(laid).for_each(|what| cx.note(what));
         cx.check()?;
-        Ok(Garment { starts, ..whole(&offsets, seams, fabric, points) })
+        let mut garment = Garment { starts, ..whole(&offsets, seams, fabric, points) };
+        garment.panels.iter_mut().for_each(|p| p.layer = layers::layer(pattern, &p.name));
+        Ok(garment)
     }
 
     /// Places the pieces of a pattern that has no poses; every decision is told. What is still to
@@ -203,6 +210,35 @@ impl Arrange {
             by * 1e2
         ));
     }
+}
+
+/// Places of flat pieces that stand higher.
+struct Raised {
+    places: PiecePlaces,
+    /// The farthest that a piece was raised, metres; 0 where none was.
+    by: f64,
+}
+
+/// Raises each garment of flat pieces until its shoulder seams clear the shoulders.
+fn raised(
+    pattern: &Pattern,
+    sleeves: &[String],
+    places: &PiecePlaces,
+    flat: &Offsets,
+    seams: &[GarmentSeam],
+    body: &Body,
+) -> Raised {
+    let mut out = Raised { places: places.clone(), by: 0.0 };
+    for layer in layers::layers(pattern) {
+        let is_of = |name: &str| layers::layer(pattern, name) == layer;
+        let own: PiecePlaces =
+            places.iter().filter(|(name, _)| is_of(name)).map(|(n, p)| (n.clone(), p.clone())).collect();
+        let by = boards::raise(&boards::boards(pattern, sleeves, &own, flat), seams, body);
+        let mine = out.places.iter_mut().filter(|(name, _)| is_of(name));
+        mine.flat_map(|(_, points)| points).for_each(|p| p.y += by);
+        out.by = out.by.max(by);
+    }
+    out
 }
 
 /// The pieces stand where the body is.

@@ -59,5 +59,6 @@ fn append(g: &mut Garment, name: &str, first: usize, panel: &Panel, fabric: &Arc
         boundary: panel.boundary.iter().map(shift).collect(),
         photo_px: panel.photo_px.clone(),
         fabric: fabric.clone(),
+        layer: 0,
     });
 }

@@ -57,7 +57,7 @@ pub enum FabricTexture {
 /// stitched hem has a picture of its own, in which nothing is smaller than 0.4 mm.
 #[stage(
     role = Texturer,
-    version = 4,
+    version = 5,
     source = "Adanur, Handbook of Weaving, 2001: plain, twill and denim weaves; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "FabricTexturer(texture: Denim, colour: \"#2b3f5c\")",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -70,6 +70,10 @@ pub struct FabricTexturer {
     /// denim, else natural white where it is not given.
     #[param(default = None)]
     colour: Option<String>,
+    /// Colours of the garments of an outfit, from the innermost, in the place of `colour`:
+    /// `["#f2f0ea", "#7a2f3a"]`; garments beyond the list have `colour`.
+    #[param(default = Vec::new())]
+    colours: Vec<String>,
     /// Colour of denim's weft or of the second band, as `#rrggbb` (sRGB); white where it is not
     /// given.
     #[param(default = None)]
@@ -128,13 +132,13 @@ impl FabricTexturer {
         garment.check_solvable()?;
         self.fault().map_or(Ok(()), Err)?;
         let mut kinds = Vec::new();
-        for shows in garment.panels.iter().map(|p| self.shows(&p.fabric.name)) {
-            if !kinds.contains(&shows) {
-                kinds.push(shows);
+        for shown in garment.panels.iter().map(|p| self.shown(p)) {
+            if !kinds.contains(&shown) {
+                kinds.push(shown);
             }
         }
         // Whether `Auto` finds denim depends on the fabrics.
-        let has_denim = kinds.contains(&FabricTexture::Denim);
+        let has_denim = kinds.iter().any(|k| k.texture == FabricTexture::Denim);
         if self.texture == FabricTexture::Auto && self.second.is_some() && !has_denim {
             return Err(idle("second", "`texture: Auto`, which found no denim", OF_SECOND));
         }
@@ -198,7 +202,7 @@ impl FabricTexturer {
         cx: &Context,
     ) -> Result<ClothPictures, StageError> {
         let tiles: Vec<Tile> =
-            dress.kinds.iter().map(|k| self.tile(*k, colour)).collect::<Result<_, StageError>>()?;
+            dress.kinds.iter().map(|k| self.tile(k, colour)).collect::<Result<_, StageError>>()?;
         let mut sheets = Vec::new();
         for (panel, finishes) in dress.garment.panels.iter().zip(dress.finishes) {
             cx.check()?;
@@ -207,9 +211,9 @@ impl FabricTexturer {
                 continue;
             }
             let flat = &dress.garment.rest[panel.vertices.clone()];
-            let kind = dress.kind_of(self.shows(&panel.fabric.name));
+            let kind = dress.kind_of(&self.shown(panel));
             let swatch = tiles[kind].swatch(longest(flat) / MOST_PX);
-            let rib = self.cloth(dress.kinds[kind], colour)?.first();
+            let rib = self.cloth(&dress.kinds[kind], colour)?.first();
             sheets.push(Some(PanelPicture::new(flat, &swatch, finishes, rib)));
         }
         Ok(ClothPictures { tiles, sheets })
@@ -223,7 +227,7 @@ impl FabricTexturer {
         let mut next = dress.kinds.len();
         for (i, panel) in garment.panels.iter().enumerate() {
             cx.check()?;
-            let kind = dress.kind_of(self.shows(&panel.fabric.name));
+            let kind = dress.kind_of(&self.shown(panel));
             let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
             let flat = &garment.rest[panel.vertices.clone()];
             let texture = match &pictures.sheets[i] {
@@ -259,7 +263,8 @@ impl FabricTexturer {
             model.textures.push(Texture { name, pixels: Shared::new(pixels), repeats });
         };
         for (kind, tile) in dress.kinds.iter().zip(pictures.tiles) {
-            let name = format!("{kind:?}").to_lowercase();
+            let texture = format!("{:?}", kind.texture).to_lowercase();
+            let name = kind.colour.map_or(texture.clone(), |colour| format!("{texture} {colour}"));
             add(name, tile.pixels.clone(), &|strength| tile.normal_map(strength), true);
         }
         for (panel, sheet) in dress.garment.panels.iter().zip(pictures.sheets) {
@@ -273,9 +278,9 @@ impl FabricTexturer {
         }
     }
 
-    fn tile(&self, shows: FabricTexture, colour: Option<&str>) -> Result<Tile, StageError> {
+    fn tile(&self, shown: &Shown<'_>, colour: Option<&str>) -> Result<Tile, StageError> {
         let repeat = self.repeat.map_or(BANDS, |l| l.metres());
-        Ok(tile(self.cloth(shows, colour)?, repeat, self.size))
+        Ok(tile(self.cloth(shown, colour)?, repeat, self.size))
     }
 
     /// The first parameter that is not understood or does nothing here.
@@ -287,6 +292,7 @@ impl FabricTexturer {
         };
         let colours = [("colour", &self.colour), ("second", &self.second)];
         let bad = |(name, text): (&'static str, &Option<String>)| Some(parse(text.as_ref()?).err()?.at(name));
+        let bad_layer = || self.colours.iter().find_map(|c| Some(parse(c).err()?.at("colours")));
         of("second", self.second.is_some(), &[Auto, Denim, Check, Stripe], OF_SECOND)
             .or_else(|| of("repeat", self.repeat.is_some(), &[Check, Stripe], "checks and stripes"))
             .or_else(|| {
@@ -296,7 +302,21 @@ impl FabricTexturer {
                 given.then(|| StageError::invalid(text).hint(hint).at("strength"))
             })
             .or_else(|| colours.into_iter().find_map(bad))
+            .or_else(bad_layer)
+            .or_else(|| {
+                let both = !self.colours.is_empty() && !self.variants.is_empty();
+                let text = "`variants` have one colour, the garments of an outfit have several";
+                both.then(|| {
+                    StageError::invalid(text).hint("leave out `colours` or `variants`").at("variants")
+                })
+            })
             .or_else(|| self.variants.iter().find_map(bad_variant))
+    }
+
+    /// What is seen of a panel.
+    fn shown(&self, panel: &GarmentPanel) -> Shown<'_> {
+        let colour = self.colours.get(panel.layer as usize).map(String::as_str);
+        Shown { texture: self.shows(&panel.fabric.name), colour }
     }
 
     /// What cloth of this name looks like.
@@ -315,11 +335,11 @@ impl FabricTexturer {
         }
     }
 
-    fn cloth(&self, shows: FabricTexture, colour: Option<&str>) -> Result<ClothKind, StageError> {
-        let standard = if shows == FabricTexture::Denim { INDIGO } else { NATURAL };
-        let colour = parse(colour.unwrap_or(standard))?;
+    fn cloth(&self, shown: &Shown<'_>, colour: Option<&str>) -> Result<ClothKind, StageError> {
+        let standard = if shown.texture == FabricTexture::Denim { INDIGO } else { NATURAL };
+        let colour = parse(shown.colour.or(colour).unwrap_or(standard))?;
         let second = parse(self.second.as_deref().unwrap_or(WHITE))?;
-        Ok(match shows {
+        Ok(match shown.texture {
             FabricTexture::Auto | FabricTexture::Plain => ClothKind::Plain(colour),
             FabricTexture::Twill => ClothKind::Twill(colour),
             FabricTexture::Denim => ClothKind::Denim { warp: colour, weft: second },
@@ -331,16 +351,24 @@ impl FabricTexturer {
     }
 }
 
+/// A kind of cloth that is seen.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Shown<'a> {
+    texture: FabricTexture,
+    /// The colour of its garment, where the garments of an outfit have their own.
+    colour: Option<&'a str>,
+}
+
 /// What is to be dressed: a garment, the kinds of its cloth, and the finished edges of each panel.
 struct Dress<'a> {
     garment: &'a Garment,
-    kinds: &'a [FabricTexture],
+    kinds: &'a [Shown<'a>],
     finishes: &'a [Vec<EdgeFinish>],
 }
 
 impl Dress<'_> {
-    fn kind_of(&self, shows: FabricTexture) -> usize {
-        self.kinds.iter().position(|kind| *kind == shows).unwrap_or(0)
+    fn kind_of(&self, shown: &Shown<'_>) -> usize {
+        self.kinds.iter().position(|kind| kind == shown).unwrap_or(0)
     }
 }
 

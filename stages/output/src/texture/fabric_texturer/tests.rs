@@ -37,6 +37,24 @@ fn the_fabrics_name_says_what_it_looks_like() {
 }
 
 #[test]
+fn the_garments_of_an_outfit_have_their_own_colours() {
+    let mut garment = dress::garment();
+    garment.panels[1].layer = 1;
+    let two = FabricTexturer {
+        colours: vec!["#f2f0ea".into(), "#7a2f3a".into()],
+        ..texturer(FabricTexture::Plain)
+    };
+    let model = two.run(&garment, None, None, &Context::quiet()).unwrap();
+    let names: Vec<&str> = model.textures.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["plain #f2f0ea", "plain #7a2f3a"]);
+    assert_eq!((model.materials[0].texture, model.materials[1].texture), (Some(0), Some(1)));
+    let red = FabricTexturer { variants: BTreeMap::from([("red".into(), "#a03028".into())]), ..two };
+    assert_eq!(fault(&red).0, "`variants` have one colour, the garments of an outfit have several");
+    let wrong = FabricTexturer { colours: vec!["white".into()], ..texturer(FabricTexture::Plain) };
+    assert_eq!(fault(&wrong).0, "\"white\" is no colour");
+}
+
+#[test]
 fn what_does_nothing_is_refused() {
     let striped = FabricTexturer { repeat: Some(Length::mm(10.0)), ..texturer(FabricTexture::Jersey) };
     let hint = "it is for checks and stripes: leave it out, or choose one of these";

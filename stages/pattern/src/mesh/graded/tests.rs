@@ -189,6 +189,7 @@ fn rolled(radius: f64, half: f64) -> Garment {
         boundary: vec![at(0, 0), at(columns, 0), at(columns, rows), at(0, rows)],
         photo_px: vec![],
         fabric: toile_fixtures::cloth::plain(1000.0, 100.0, 1e-5),
+        layer: 0,
     };
     Garment {
         velocities: vec![Vector3::zeros(); n],

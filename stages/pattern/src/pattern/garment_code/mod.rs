@@ -52,20 +52,33 @@ pub struct GarmentCode {
 impl GarmentCode {
     /// Runs the stage.
     pub fn run(&self, cx: &Context) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
+        let pattern = self.read(cx)?;
+        cx.check()?;
+        let (outlines, plan) = self.lowered(&pattern, cx)?;
+        Ok((pattern, outlines, plan))
+    }
+
+    /// The pattern of the file.
+    pub(super) fn read(&self, cx: &Context) -> Result<Pattern, StageError> {
         self.named()?;
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
-        let refused = |all: Vec<SpecificationDamage>| {
-            faults::refused(&self.file, all.iter().map(SpecificationDamage::fault).collect())
-        };
-        let (pattern, told) = pattern(&bytes, &super::stem(&self.file)).map_err(refused)?;
+        let (pattern, told) = pattern(&bytes, &super::stem(&self.file)).map_err(|all| self.refused(&all))?;
         super::tell(told, cx);
-        cx.check()?;
+        Ok(pattern)
+    }
+
+    /// What is cut and sewn of a pattern.
+    fn lowered(&self, pattern: &Pattern, cx: &Context) -> Result<(Set<Outline>, SewingPlan), StageError> {
         let lowered = pattern.lower().map_err(|e| {
-            refused(vec![SpecificationDamage::Unsewable { what: e.to_string(), remedy: e.remedy() }])
+            self.refused(&[SpecificationDamage::Unsewable { what: e.to_string(), remedy: e.remedy() }])
         })?;
         super::tell(Remarks { notes: lowered.notes, warnings: lowered.warnings }, cx);
         let outlines = lowered.outlines.into_iter().map(|(name, o)| (name, Arc::new(o))).collect();
-        Ok((pattern, Set(outlines), lowered.plan))
+        Ok((Set(outlines), lowered.plan))
+    }
+
+    fn refused(&self, all: &[SpecificationDamage]) -> StageError {
+        faults::refused(&self.file, all.iter().map(SpecificationDamage::fault).collect())
     }
 
     fn named(&self) -> Result<(), StageError> {

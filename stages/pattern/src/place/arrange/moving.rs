@@ -63,8 +63,7 @@ impl Moving<'_> {
                 Some(all) => all.iter().filter(|s| s.1 == limb.hand).map(|s| s.0.clone()).collect(),
                 None => tubes::around(&limb, self.pattern, &places),
             };
-            let done =
-                tubes::bend(&limb, self.body, &mine, &mut places, self.seams, self.offsets, self.clearance);
+            let done = tubes::bend(&limb, &mine, &mut places, self);
             for tube in done {
                 told.push(tube.told);
                 let is_more = |n: &Narrow| narrowest.as_ref().is_none_or(|m| n.stretch() > m.1.stretch());

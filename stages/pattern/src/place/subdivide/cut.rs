@@ -113,6 +113,7 @@ impl<'a> GarmentCut<'a> {
             boundary: self.boundary(&old.boundary),
             photo_px,
             fabric: old.fabric.clone(),
+            layer: old.layer,
         }
     }
 
