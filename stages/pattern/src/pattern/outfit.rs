@@ -42,7 +42,7 @@ impl Outfit {
                 layer,
                 ..p
             }));
-            outfit.seams.extend(garment.seams.into_iter().map(|s| renamed(s, &full)));
+            outfit.seams.extend(garment.seams.into_iter().map(|s| renamed(s, full)));
         }
         cx.check()?;
         let lowered =

@@ -19,6 +19,7 @@ mod boards;
 mod layers;
 mod legs;
 mod limb;
+mod move_input;
 mod moving;
 mod narrow;
 mod patches;
@@ -29,7 +30,8 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
-use moving::{Moved, Moving};
+use move_input::MoveInput;
+use moving::Moved;
 use region::{Decided, Region};
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
@@ -131,7 +133,7 @@ impl Arrange {
             let told = patches::lay(&patches, &mut places, &seams, &flat)?;
             Ok((places.into_values().flatten().collect(), told))
         };
-        let moving = Moving {
+        let moving = MoveInput {
             body,
             pattern: &worn,
             seams: &seams,

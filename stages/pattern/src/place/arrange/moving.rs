@@ -5,22 +5,9 @@
 //! Sleeves have none: flat beside the arm, they sew worse in all garments that were tried.
 
 use super::limb::Limb;
+use super::move_input::MoveInput;
 use super::narrow::Narrow;
 use super::{PiecePlaces, legs, tubes};
-use crate::place::sew::Offsets;
-use toile_core::prelude::*;
-
-/// What the moves go by.
-pub(super) struct Moving<'a> {
-    pub(super) body: &'a Body,
-    pub(super) pattern: &'a Pattern,
-    pub(super) seams: &'a [GarmentSeam],
-    pub(super) offsets: &'a Offsets<'a>,
-    /// The sleeves of a pattern without places, each with the hand of its arm.
-    pub(super) sleeves: Option<&'a [(String, Hand)]>,
-    /// Least distance of a bent piece from the arm, metres.
-    pub(super) clearance: f64,
-}
 
 /// Pieces that were moved.
 pub(super) struct Moved {
@@ -34,7 +21,7 @@ pub(super) struct Moved {
 /// Places without a move that was made, in words.
 pub(super) type Others = Vec<(&'static str, PiecePlaces)>;
 
-impl Moving<'_> {
+impl MoveInput<'_> {
     /// The pieces moved to legs and arms; and, where legs were moved, the places without that, in
     /// words.
     pub(super) fn moved_and_others(&self, places: &PiecePlaces) -> (Moved, Others) {

@@ -122,6 +122,7 @@ pub(super) fn refuse(names: &str, narrow: &Narrow, most: f64, stage: &str) -> Re
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     /// A tube of two pieces of that width and length whose seams run along the arm.

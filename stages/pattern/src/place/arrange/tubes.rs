@@ -3,7 +3,7 @@
 use super::PiecePlaces;
 use super::layers::{APART, layer};
 use super::limb::Limb;
-use super::moving::Moving;
+use super::move_input::MoveInput;
 use super::narrow::{ArmGirths, Narrow, TubeLoop, TubePlace, loops, narrowest};
 use crate::place::sew::Offsets;
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,11 +47,11 @@ pub(super) struct Bent {
 }
 
 /// Bends pieces around the arm.
-pub(super) fn bend(limb: &Limb, mine: &[String], places: &mut PiecePlaces, moving: &Moving<'_>) -> Vec<Bent> {
-    let (seams, offsets) = (moving.seams, moving.offsets);
+pub(super) fn bend(limb: &Limb, mine: &[String], places: &mut PiecePlaces, by: &MoveInput<'_>) -> Vec<Bent> {
+    let (seams, offsets) = (by.seams, by.offsets);
     let sewn = sewn(seams, offsets);
     let mut done = Vec::new();
-    let girths = ArmGirths::of(limb, moving.body);
+    let girths = ArmGirths::of(limb, by.body);
     for tube in tubes(limb, mine, places, &sewn) {
         let axis = file_axis(limb, &tube, places, seams, offsets);
         let mut sides: Vec<ArmPiece> =
@@ -62,8 +62,8 @@ pub(super) fn bend(limb: &Limb, mine: &[String], places: &mut PiecePlaces, movin
             .sum();
         let along = || sides.iter().flat_map(|s| &s.flat).map(|p| p[0]);
         let (from, to) = (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
-        let outwards = APART * f64::from(layer(moving.pattern, &tube[0]));
-        let radius = (girth / TAU).max(limb.radius(from, to) + moving.clearance) + outwards;
+        let outwards = APART * f64::from(layer(by.pattern, &tube[0]));
+        let radius = (girth / TAU).max(limb.radius(from, to) + by.clearance) + outwards;
         let is_ring = sides.len() == 1 && sewn.contains(&(tube[0].clone(), tube[0].clone()));
         let around = loops_around(&sides, is_ring, seams, offsets);
         for s in &mut sides {
