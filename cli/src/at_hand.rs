@@ -2,14 +2,17 @@
 //!
 //! A pipeline's own paths are relative to the pipeline file. The value of a field that names a file
 //! (`FIELDS`) on the command line that is a file seen from the current folder becomes its full
-//! path; quotes may be left out. So does such a field within brackets:
-//! `--set 'body=BodyObj(file: "me.obj")'`.
+//! path; quotes may be left out. So does such a field within brackets
+//! (`--set 'body=BodyObj(file: "me.obj")'`), and each file of a list (`LISTS`).
 
 use std::path::Path;
 use toile_pipeline::Override;
 
 /// Fields whose values are paths of files that a stage reads.
 const FIELDS: [&str; 4] = ["file", "seams", "measurements", "panorama"];
+
+/// Fields whose values are lists of such paths.
+const LISTS: [&str; 1] = ["garments"];
 
 /// The overrides with their files found.
 pub(crate) fn found(overrides: &[Override]) -> Vec<Override> {
@@ -24,14 +27,18 @@ fn names_file(o: &Override) -> bool {
 fn within(o: &Override) -> Override {
     let mut value = String::new();
     let mut rest = o.value.as_str();
+    // Whether the texts that follow are in a list of files.
+    let mut in_list = false;
     while let Some((before, text, after)) = next_text(rest) {
         value.push_str(before);
-        let field = before.trim_end().strip_suffix(':').map_or("", |b| {
-            let b = b.trim_end();
-            &b[b.rfind(|c: char| !(c.is_alphanumeric() || c == '_')).map_or(0, |i| i + 1)..]
-        });
+        let before = before.trim();
+        in_list = match before.strip_suffix('[') {
+            Some("") => o.path.rsplit('.').next().is_some_and(|field| LISTS.contains(&field)),
+            Some(head) => LISTS.contains(&field_before(head)),
+            None => in_list && before == ",",
+        };
         match std::path::absolute(text) {
-            Ok(full) if FIELDS.contains(&field) && Path::new(text).is_file() => {
+            Ok(full) if (in_list || FIELDS.contains(&field_before(before))) && Path::new(text).is_file() => {
                 value.push_str(&format!("{:?}", full.display().to_string()));
             }
             _ => value.push_str(&format!("\"{text}\"")),
@@ -40,6 +47,14 @@ fn within(o: &Override) -> Override {
     }
     value.push_str(rest);
     Override { value, ..o.clone() }
+}
+
+/// The field whose value begins behind a text: `file` of `BodyObj(file:`; empty where none does.
+fn field_before(text: &str) -> &str {
+    text.trim_end().strip_suffix(':').map_or("", |b| {
+        let b = b.trim_end();
+        &b[b.rfind(|c: char| !(c.is_alphanumeric() || c == '_')).map_or(0, |i| i + 1)..]
+    })
 }
 
 /// What stands before the first plain text in quotes, the text, and what stands behind it; none
@@ -102,6 +117,20 @@ mod tests {
         assert_eq!(value("a=B(file: \"C:\\\\x\")"), "B(file: \"C:\\\\x\")");
         assert_eq!(value("a=B(file: r\"Cargo.toml\")"), "B(file: r\"Cargo.toml\")");
         assert_eq!(value("a=\"open"), "\"open");
+    }
+
+    #[test]
+    fn files_of_a_list_are_found_as_well() {
+        let here = std::env::current_dir().unwrap().join("Cargo.toml").display().to_string();
+        assert_eq!(
+            value("pattern.garments=[\"Cargo.toml\", \"none.json\", \"Cargo.toml\"]"),
+            format!("[{here:?}, \"none.json\", {here:?}]")
+        );
+        assert_eq!(
+            value("pattern=Outfit(garments: [\"Cargo.toml\"], name: \"Cargo.toml\")"),
+            format!("Outfit(garments: [{here:?}], name: \"Cargo.toml\")")
+        );
+        assert_eq!(value("plugins=[\"Cargo.toml\"]"), "[\"Cargo.toml\"]");
     }
 
     #[test]

@@ -16,12 +16,14 @@ use std::time::{Duration, Instant};
 const OURSELVES: [&str; 2] = ["cargo test --release --workspace", ".ci/wide"];
 
 /// Files that the guide takes for a reader's own, and which of ours stand for them.
-const OWN_FILES: [(&str, &str); 8] = [
+const OWN_FILES: [(&str, &str); 10] = [
     ("mine.jpg", "samples/tshirt/front.jpg"),
     ("front.jpg", "samples/vest/front.jpg"),
     ("back.jpg", "samples/vest/back.jpg"),
     ("skirt.jpg", "samples/skirt/front.jpg"),
     ("my_specification.json", "samples/pattern/shirt_specification.json"),
+    ("inner_specification.json", "samples/pattern/trousers_specification.json"),
+    ("outer_specification.json", "samples/pattern/shirt_specification.json"),
     ("mine.svg", "samples/pattern/pleats.svg"),
     ("seams.ron", "samples/pattern/pleats_seams.ron"),
     ("pipelines/mine.ron", "vest.ron"),

@@ -66,6 +66,25 @@ fn a_garment_code_file() {
 }
 
 #[test]
+fn garments_that_are_worn_over_each_other() {
+    let command = "toile run pipelines/outfit.ron --set 'pattern.garments=[\"inner_specification.json\", \"outer_specification.json\"]' --out out/mine";
+    told("docs/guide/patterns.md", command);
+    let dir = scratch();
+    let cache = dir.path().join("cache");
+    for (inner, outer) in
+        [(skirt(34.5, 62.0, 58.0), top(56.0, 62.0)), (hip_skirt(34.0, 52.0, 60.0), top(54.0, 50.0))]
+    {
+        let lay = |name: &str, bytes| std::fs::write(dir.path().join(name), bytes).unwrap();
+        lay("inner_specification.json", flat::garment_code(&inner, 107.0));
+        lay("outer_specification.json", flat::garment_code(&outer, 82.0));
+        passes(command, dir.path(), &cache);
+        for name in LOOK {
+            std::fs::remove_file(dir.path().join(name)).unwrap();
+        }
+    }
+}
+
+#[test]
 fn a_drawing() {
     with_each(
         "docs/guide/patterns.md",
