@@ -5,10 +5,11 @@ use crate::Streams;
 use crate::args::StudyArgs;
 use crate::{terminal::interrupt, terminal::threads};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::Write;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::mpsc::channel;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use toile_core::{Event, Listener, Remarks, StageError};
 use toile_pipeline::Pipeline;
 use toile_trade::ablate::AblationProgress;
@@ -22,6 +23,26 @@ pub(crate) struct Bar {
     ids: Vec<String>,
     notes: Mutex<Vec<(String, String)>>,
     warnings: Mutex<Vec<(String, String)>>,
+    moments: Option<Mutex<Moments>>,
+}
+
+/// When a run that is still at work says what it is doing.
+struct Moments {
+    start: Instant,
+    /// How many of them are over.
+    over: usize,
+}
+
+impl Moments {
+    /// After so many seconds.
+    const AFTER: [u64; 3] = [5, 15, 30];
+
+    /// The moment that has come since the last look, s.
+    fn come(&mut self, elapsed: Duration) -> Option<u64> {
+        let over = Self::AFTER.iter().filter(|after| elapsed.as_secs() >= **after).count();
+        let before = std::mem::replace(&mut self.over, over);
+        (over > before).then(|| Self::AFTER[over - 1])
+    }
 }
 
 impl Bar {
@@ -30,7 +51,22 @@ impl Bar {
         let template = "{spinner} {elapsed:>4} [{bar:28}] {prefix}: {wide_msg}";
         let bar = drawn(ids.len() as u64 * STEPS, template, streams);
         tick(&bar, 120);
-        Bar { bar, ids, notes: Mutex::default(), warnings: Mutex::default() }
+        let moments = (!streams.is_quiet()).then(|| Mutex::new(Moments { start: Instant::now(), over: 0 }));
+        Bar { bar, ids, notes: Mutex::default(), warnings: Mutex::default(), moments }
+    }
+
+    /// Says after some seconds what a stage is doing, where it stays to be read.
+    fn say_at_moments(&self, who: &str, text: &str) {
+        let Some(moments) = &self.moments else { return };
+        let mut moments = moments.lock().unwrap_or_else(PoisonError::into_inner);
+        let elapsed = moments.start.elapsed();
+        let Some(after) = moments.come(elapsed) else { return };
+        let line = format!("after {after} s: {who}: {text}");
+        match self.bar.is_hidden() {
+            // A line that cannot be written is no reason to end a run.
+            true => drop(writeln!(std::io::stderr().lock(), "{line}")),
+            false => self.bar.println(line),
+        }
     }
 
     /// Removes the bar and returns the notes and warnings of the stages, each with its stage.
@@ -52,6 +88,7 @@ impl Listener for Bar {
                 let before = self.ids.iter().position(|id| id == stage).unwrap_or(0) as u64;
                 self.bar.set_position(before * STEPS + (share * STEPS as f64) as u64);
                 interrupt::at_work(&who);
+                self.say_at_moments(&who, text);
                 self.bar.set_prefix(who);
                 self.bar.set_message(text.clone());
             }

@@ -417,7 +417,7 @@ impl SolverProgress<'_> {
         }
         let (speed, [pass, passes]) = (level.outcome.speed, level.pass);
         let text = match level.sewing {
-            true => format!("sewing: widest seam {:.1} mm", level.gap * 1e3),
+            true => format!("sewing: {} is open by {:.1} mm", engine::seam(&level.seam), level.gap * 1e3),
             false => format!(
                 "draping, mesh {pass} of {passes}: moves {:.1} mm/s, at rest below {:.1} mm/s",
                 speed * 1e3,

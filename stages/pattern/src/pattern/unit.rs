@@ -24,8 +24,8 @@ pub enum DrawingUnit {
 }
 
 /// The longest side of a garment's largest piece, metres; a unit that the file states is used if
-/// this size is within these.
-pub(super) const WORN: RangeInclusive<f64> = 0.15..=5.0;
+/// this size is within these: half a circle of a ball gown is 6 m wide.
+pub(super) const WORN: RangeInclusive<f64> = 0.15..=8.0;
 /// The same size, metres, where nothing states the unit.
 pub(super) const LIKELY: RangeInclusive<f64> = 0.25..=2.5;
 /// What that side is most often, metres.

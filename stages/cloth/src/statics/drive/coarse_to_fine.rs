@@ -188,6 +188,7 @@ impl<'a> Solve<'a> {
             nodes: x.len(),
             sewing,
             gap: 0.0,
+            seam: String::new(),
             pass: [meshes - k, meshes],
             outcome: Outcome::default(),
             seconds: 0.0,
@@ -199,7 +200,8 @@ impl<'a> Solve<'a> {
             let seconds = start.elapsed().as_secs_f64();
             let seams = system.get::<SeamForces>().filter(|_| sewing);
             let gap = seams.map_or(0.0, |s| s.widest(x));
-            report = LevelReport { gap, outcome: *outcome, seconds, ..report };
+            report.seam = if gap > 0.0 { self.widest_seam(k, x) } else { String::new() };
+            (report.gap, report.outcome, report.seconds) = (gap, *outcome, seconds);
             stop = self.fallen(k, system, sheet, x, &piece);
             if stop.is_none() && progress(&report).is_break() {
                 stop = Some(StaticsError::Stopped);

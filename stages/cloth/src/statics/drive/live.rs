@@ -240,6 +240,7 @@ impl<'a> Live<'a> {
             nodes: self.x.len(),
             sewing: false,
             gap: 0.0,
+            seam: String::new(),
             pass: [1, 1],
             outcome,
             seconds: clock.elapsed().as_secs_f64(),

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use toile_geometry::Vec3;
 
 /// The run of one level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LevelReport {
     /// Its nodes.
     pub nodes: usize,
@@ -15,6 +15,8 @@ pub struct LevelReport {
     pub sewing: bool,
     /// The widest seam that is still open, m; 0 where none is.
     pub gap: f64,
+    /// The name of that seam; empty where none is open.
+    pub seam: String,
     /// The index of the level, counted from 1 for the coarsest, and how many levels there are.
     pub pass: [usize; 2],
     /// Its last outcome.

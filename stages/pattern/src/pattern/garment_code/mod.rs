@@ -37,7 +37,7 @@ use toile_core::prelude::*;
 /// impossible units. Other damage is refused by panel, edge and place, all of it at once.
 #[stage(
     role = Reader,
-    version = 2,
+    version = 3,
     source = "Korosteleva and Sorkine-Hornung 2023, pygarment 2.0",
     example = "GarmentCode(file: \"shirt_specification.json\")",
     contracts(Deterministic, ThreadInvariant)
@@ -93,6 +93,9 @@ impl GarmentCode {
     }
 }
 
+/// Of a file whose panels have no places.
+const ONE_PLACE: &str = "all panels stand at the same place, so the file says nothing of where they are worn: they are placed by their names and seams";
+
 /// The pattern of a file's bytes, and what was repaired.
 ///
 /// Errors: all that is wrong with the file, in its order.
@@ -128,6 +131,10 @@ fn pattern(bytes: &[u8], name: &str) -> Result<(Pattern, Remarks), Vec<Specifica
         return Err(faults);
     }
     let seams = stitches::seams(&file.stitches, &file.panels, &mut pieces, &mut told).map_err(one)?;
+    if panel::at_one_place(&file.panels) {
+        told.notes.push(ONE_PLACE.to_owned());
+        pieces.iter_mut().for_each(|m| m.piece.pose = None);
+    }
     let pattern =
         Pattern { name: name.to_owned(), pieces: pieces.into_iter().map(|m| m.piece).collect(), seams };
     let remedy = "draw the panel again; each edge needs length, and each loop area";

@@ -266,6 +266,13 @@ pub(super) fn mirrored(l: &PatternLoop) -> PatternLoop {
     }
 }
 
+/// Whether several panels all stand at the same place, turned the same way: their places were never
+/// set.
+pub(super) fn at_one_place(panels: &[RawPanel]) -> bool {
+    let same = |[a, b]: &[RawPanel; 2]| a.translation == b.translation && a.rotation == b.rotation;
+    panels.len() > 1 && panels.array_windows().all(same)
+}
+
 /// The place of the file's own flat coordinates.
 fn pose(raw: &RawPanel, unit: f64) -> Pose {
     let [x, y, z] = [raw.rotation.x, raw.rotation.y, raw.rotation.z].map(f64::to_radians);

@@ -323,6 +323,26 @@ fn small_damage_is_repaired_and_told() {
         ]
     );
     assert!((lengths(p.piece("front").unwrap())[0] - 0.5).abs() < 1e-12);
+    // Half a circle of a skirt is wider than most garments, and the unit is stated.
+    let (p, said) = told(&|f| {
+        for panel in ["front", "back"] {
+            for v in f["pattern"]["panels"][panel]["vertices"].as_array_mut().unwrap() {
+                let (x, y) = (v[0].as_f64().unwrap(), v[1].as_f64().unwrap());
+                *v = json!([9.57 * x, 9.57 * y]);
+            }
+        }
+    });
+    assert_eq!(said, Vec::<String>::new());
+    assert!((lengths(p.piece("front").unwrap())[1] - 5.742).abs() < 1e-9);
+    // Places that were never set are none.
+    let (p, said) = told(&|f| {
+        for panel in ["front", "back"] {
+            f["pattern"]["panels"][panel]["translation"] = json!([0, 0, 0]);
+            f["pattern"]["panels"][panel]["rotation"] = json!([0, 0, 0]);
+        }
+    });
+    assert_eq!(said, [super::ONE_PLACE]);
+    assert!(p.pieces.iter().all(|piece| piece.pose.is_none()));
     let (_, said) = told(&|f| drop(f.as_object_mut().unwrap().remove("properties")));
     assert_eq!(said, ["the file does not say its units: read as centimetres"]);
     // An edge that runs against the loop, and one without length.

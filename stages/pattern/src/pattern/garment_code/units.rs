@@ -1,6 +1,6 @@
 //! How many of the file's units make a metre.
 //!
-//! Method: the largest panel of a garment for people is between 15 cm and 5 m. A unit in the file
+//! Method: the largest panel of a garment for people is between 15 cm and 8 m. A unit in the file
 //! that gives such a size is used. Where the file has none, or one that gives no panel of that
 //! size, the first usual unit that gives such a panel is taken, with a warning. Limit: the right
 //! unit of a file for a doll is taken for a wrong one.
