@@ -1,0 +1,1 @@
+"""Modules of the drawing program: banks, shapes, garments, cloth, grounds, scene."""
