@@ -97,7 +97,7 @@ const SPREAD: f64 = 4.0;
 /// it was taken for. State a body of your own where you know the wearer.
 #[stage(
     role = Body,
-    version = 7,
+    version = 8,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -112,6 +112,9 @@ pub struct Fitting {
     /// Length of the mesh's edges; small bodies get shorter ones.
     #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades, finer = "less")]
     pub(super) edge: Length,
+    /// Whether a network looks at the photo, too, as in `Block`.
+    #[param(default = true)]
+    pub(super) network: bool,
 }
 
 #[stage]
@@ -132,6 +135,7 @@ impl Fitting {
                 sides: Sides::Alike,
                 waist: Waist::Plain,
                 front: Front::Whole,
+                network: self.network,
             };
             block.fitted(FRONT, front, photo, self.style.forms(), &cx.for_entry(FRONT))
         };

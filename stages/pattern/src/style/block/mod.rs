@@ -11,6 +11,7 @@ mod fitting;
 mod front;
 mod lay;
 mod leftover;
+mod likely;
 mod pieces;
 mod pleat;
 mod refusal;
@@ -28,6 +29,7 @@ use front::Front;
 pub(super) use lay::Fitted;
 use lay::{mirrored, pattern};
 use leftover::Leftover;
+use likely::Likely;
 use pieces::Making;
 use rayon::prelude::*;
 pub(super) use refusal::{LAY, no_front};
@@ -125,7 +127,7 @@ impl BlockStyle {
 /// is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 8,
+    version = 9,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -153,6 +155,9 @@ pub struct Block {
     /// Whether the front is one piece, or two halves that are closed along the middle.
     #[param(default = Front::Whole)]
     front: Front,
+    /// Whether a network looks at the photo, too, where nobody says what the garment is.
+    #[param(default = true)]
+    network: bool,
 }
 
 #[stage]
@@ -234,18 +239,22 @@ impl Block {
         cx: &Context,
     ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
         let auto = forms.len() > 1;
+        let likely = photo.filter(|_| auto && self.network).map(Likely::of).transpose()?;
         let mut upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
         if self.complete == Complete::Mirror {
             let photo = photo.ok_or_else(|| template::complete::no_frame(panel))?;
             template::complete::mark(&mut upright, outline, photo.pixels.dimensions(), panel)?;
         }
         cx.check()?;
-        let share = if auto { self.stray * UNSAID } else { self.stray };
-        let limit = share * upright.size;
+        let said = |name: &str| !auto || likely.as_ref().is_some_and(|l| l.is_sure_of(name));
+        let size = upright.size;
+        let limit = |name: &str| self.stray * size * if said(name) { 1.0 } else { UNSAID };
         let found =
-            tried(&upright, panel, &forms, Halves::Both).and_then(|best| match strays(&best.2) > limit {
-                true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), auto)),
-                false => Ok(best),
+            tried(&upright, panel, &forms, Halves::Both, likely.as_ref()).and_then(|best| {
+                match strays(&best.2) > limit(best.0) {
+                    true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), auto)),
+                    false => Ok(best),
+                }
             });
         let doubtful = match &found {
             Ok((_, form, fit)) => template::alike::differ(fit, form, upright.size),
@@ -253,8 +262,8 @@ impl Block {
         };
         let one = || {
             let upright = upright.about_its_rows()?;
-            let best = tried(&upright, panel, &forms, Halves::Better).ok()?;
-            let other = 1 - best.2.judged?;
+            let best = tried(&upright, panel, &forms, Halves::Better, likely.as_ref()).ok()?;
+            let (other, limit) = (1 - best.2.judged?, limit(best.0));
             let is_sound = strays(&best.2) <= limit * HALF && best.2.near(&upright, other, limit) >= OTHER;
             is_sound.then_some((best, upright))
         };
@@ -265,6 +274,9 @@ impl Block {
             Some(found) => found,
             None => (found?, upright),
         };
+        if let Some((kind, p)) = likely.as_ref().and_then(|l| l.instead_of(name)) {
+            return Err(refusal::another(panel, form, likely::word(kind), p));
+        }
         let mut cut = fit.clone();
         template::stance::stood(&mut cut, form);
         if self.sides == Sides::Alike {
@@ -318,6 +330,7 @@ fn tried<'f>(
     panel: &str,
     forms: &[(&'static str, &'f Form)],
     halves: Halves,
+    likely: Option<&Likely>,
 ) -> Result<(&'static str, &'f Form, Fit), StageError> {
     let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(upright, form, halves)).collect();
     let (mut found, mut reasons) = (Vec::new(), Vec::new());
@@ -327,7 +340,8 @@ fn tried<'f>(
             Err(reason) => reasons.push((*form, reason)),
         }
     }
-    let best = found.into_iter().min_by(|a, b| a.2.score.total_cmp(&b.2.score));
+    let price = |(name, _, fit): &(&str, &Form, Fit)| fit.score + likely.map_or(0.0, |l| l.price(name));
+    let best = found.into_iter().min_by(|a, b| price(a).total_cmp(&price(b)));
     best.ok_or_else(|| refusal::none(panel, &reasons))
 }
 

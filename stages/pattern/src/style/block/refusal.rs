@@ -32,6 +32,15 @@ pub(super) fn none(panel: &str, reasons: &[(&Form, &'static str)]) -> StageError
     }
 }
 
+/// A form that fits, of a garment that the network takes for another kind.
+pub(super) fn another(panel: &str, form: &Form, kind: &str, probability: f64) -> StageError {
+    StageError::invalid(format!(
+        "the outline of \"{panel}\" is that of {}, but the photo shows {kind}, as the network sees it with a probability of {probability:.2}",
+        form.word
+    ))
+    .hint(format!("{LAY}; or say what it is: --set 'style.style=Vest' --set 'body.style=Vest'"))
+}
+
 /// A form that fits badly, with its worst edge.
 pub(super) fn strays(panel: &str, form: &Form, fit: &Fit, stray: f64, auto: bool) -> StageError {
     let worst =
