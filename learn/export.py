@@ -26,8 +26,8 @@ from words import KINDS, LANDMARKS, LIES, PARTS
 
 COMMANDS = ["python draw.py --count 1000 --seed S --size 256 --out POOL/S",
             "python train.py --until HH:MM",
-            "python score.py --weights best.pt --json figures.json --sheet sheet.jpg",
-            "python export.py --weights best.pt --out . --figures figures.json"]
+            "python score.py --weights last.pt --json figures.json --sheet sheet.jpg",
+            "python export.py --weights last.pt --out . --figures figures.json"]
 
 
 class Listed(nn.Module):

@@ -3,7 +3,7 @@
 //! The network names the kind of a garment as people do; a style is a way to cut one. A kind gives
 //! its probability to every style that cuts garments of that kind. Beside the fit of a template to
 //! the outline, which tells forms apart that look alike in a photo, it tells what an outline
-//! cannot: shorts whose legs touch from a skirt. Cost: that of `toile_recognise::see`, some 30 ms.
+//! cannot: shorts whose legs touch from a skirt. Cost: that of `toile_recognise::see`, some 40 ms.
 
 use super::BlockStyle;
 use toile_core::prelude::*;
