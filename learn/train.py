@@ -38,8 +38,8 @@ WEIGHTS = torch.tensor([.7, .8, 1.3, 1.3, 1.2, 1.2, 1.6, 1.6, 1.6, 1.6, 1.6])
 
 def size_at(done, step=0):
     """Picture size by the share of the time that has passed; several near the end."""
-    if done < .82:
-        return 64 if done < .12 else 96 if done < .45 else 128
+    if done < .8:
+        return 64 if done < .1 else 96 if done < .35 else (96, 128, 128, 160)[step % 4]
     return (192, 128, 160)[step % 3]
 
 
@@ -249,7 +249,7 @@ class Run:
 def look(run, apart, judge, drawn, done):
     """Short figures on kept-apart senders and unseen drawn pictures; the best is kept."""
     run.slow.eval()
-    size = 128 if done < .82 else 192
+    size = 128 if done < .8 else 160
     kinds = on_senders(run.slow, apart, size)
     parts = on_drawn(run.slow, judge, size)
     print(f"  kinds {kinds['top1']:.3f} {kinds['top2']:.3f}  parts {parts['parts_mean']:.3f} mask {parts['mask']:.3f} "

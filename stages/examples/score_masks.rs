@@ -151,7 +151,8 @@ fn run(stage: &dyn Stage, photo: &Photo) -> Result<Mask, StageError> {
     let cx = Context::quiet();
     let smooth = NeighbourhoodMean::default()
         .run_ports(&Inputs(vec![Some(PortValue::One(Arc::new(photo.clone())))]), &cx)?;
-    let inputs = stage.card().inputs.iter().map(|_| smooth.first().cloned()).collect();
+    // The first port takes the photo; the others may be left out.
+    let inputs = (0..stage.card().inputs.len()).map(|k| smooth.first().filter(|_| k == 0).cloned()).collect();
     let out = stage.run_ports(&Inputs(inputs), &cx)?;
     match out.first() {
         Some(PortValue::One(mask)) => {

@@ -67,8 +67,16 @@ static NETWORK: OnceLock<Result<PartsNetwork, RecogniseError>> = OnceLock::new()
 /// The photo has no pixels; the network's file is not the one that the program was built for; or
 /// those of [`PartsNetwork::see`].
 pub fn see(photo: &RgbImage, threads: usize) -> Result<SeenGarment, RecogniseError> {
-    let network = NETWORK.get_or_init(|| PartsNetwork::load(FILE)).as_ref();
-    network.map_err(RecogniseError::clone)?.see(photo, threads)
+    // Read outside of the lock: a thread that waits for its helpers there may take up another photo,
+    // which would then wait for this one.
+    let network = match NETWORK.get() {
+        Some(network) => network,
+        None => {
+            let read = PartsNetwork::load(FILE);
+            NETWORK.get_or_init(|| read)
+        }
+    };
+    network.as_ref().map_err(RecogniseError::clone)?.see(photo, threads)
 }
 
 impl PartsNetwork {

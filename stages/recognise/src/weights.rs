@@ -8,4 +8,4 @@
 pub const FILE: &[u8] = include_bytes!("../weights/parts.onnx");
 
 /// The BLAKE3 digest of [`FILE`], 64 hexadecimal digits.
-pub const DIGEST: &str = "ea85907016f871c1272043fb5f7e0d6ef1956f03ba6d017fc4626ccd8fc96503";
+pub const DIGEST: &str = "744a128ea2e3018f75b662001224e22aeebe0b47aef3a3498573c645ab0f1847";

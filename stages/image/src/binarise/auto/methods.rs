@@ -5,8 +5,10 @@ use super::super::graph_cut::{GraphCut, start};
 use super::super::small::SmallPhoto;
 use super::colour_split::colour_split;
 use super::ground_distance::ground_distance;
+use super::network::with_odds;
 use super::walker::walk;
 use toile_core::prelude::*;
+use toile_recognise::SeenGarment;
 
 /// A method's mask.
 #[derive(Debug, Clone)]
@@ -18,10 +20,11 @@ pub(super) struct MethodMask {
 }
 
 /// What each method finds; a method that finds nothing is left out.
-/// `given` is the mask of an earlier stage, brought to the small size.
+/// `given` is the mask of an earlier stage, brought to the small size; `seen` what a network sees.
 pub(super) fn methods(
     small: &SmallPhoto,
     given: Option<Vec<bool>>,
+    seen: Option<&SeenGarment>,
     cx: &Context,
 ) -> Result<Vec<MethodMask>, StageError> {
     let cut = GraphCut::default();
@@ -42,6 +45,14 @@ pub(super) fn methods(
         let outside: Vec<bool> = walked.iter().map(|on| !on).collect();
         let again = cut.settle(small.clone(), (walked, outside), cx)?;
         add("graph cut from edges", again.map(|c| c.mask));
+    }
+    if let Some(seen) = seen {
+        let small = with_odds(small.clone(), seen);
+        let start = (0..small.lab.len()).map(|i| small.odds(i) > 0.0).collect::<Vec<bool>>();
+        let outside: Vec<bool> = start.iter().map(|on| !on).collect();
+        if start.contains(&true) && outside.contains(&true) {
+            add("network", cut.settle(small, (start, outside), cx)?.map(|c| c.mask));
+        }
     }
     add("mask given", given.and_then(|raw| clean(small, &raw)));
     Ok(found)

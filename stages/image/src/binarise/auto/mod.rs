@@ -1,9 +1,9 @@
 //! The binariser that knows when it is wrong.
 //!
-//! Six methods, and the mask of an earlier stage where there is one, most of which share neither
+//! Seven methods, and the mask of an earlier stage where there is one, most of which share neither
 //! model nor start, look at the photo at a reduced size (`methods`): a graph cut, the ground's
 //! colours, a split of colours in two, the distance to the rim's colours, a random walk that sees
-//! edges alone, and a graph cut from that walk's end. For each mask `evidence` asks how far others
+//! edges alone, a graph cut from that walk's end, and what a network has learnt (`network`). For each mask `evidence` asks how far others
 //! agree with it, how much of its contour lies on an edge of the photo, and how alike its halves
 //! are. The best is taken: thin parts without a mirror image are taken off it and pairs of straps
 //! are put back (`thin`), wedges of ground between sleeve and side are opened (`wedge`), its
@@ -29,6 +29,7 @@ mod grid;
 mod ground_distance;
 mod larger;
 mod methods;
+mod network;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -68,7 +69,7 @@ const NEXT: &str = "`GraphCut()`";
 /// lie apart from each other, the largest is taken, or the one that is marked.
 #[stage(
     role = Binariser,
-    version = 3,
+    version = 4,
     source = "Boykov and Jolly, 2001; Grady, 2006; Otsu, 1979",
     example = "Auto(confidence: 0.3)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -83,9 +84,13 @@ pub struct Auto {
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 1.0, min = 0.0, max = 1.0)]
     pub holes: f64,
-    /// The garment may touch the frame over this share of the photo's shorter side.
-    #[param(default = 0.05, min = 0.0, max = 4.0)]
+    /// The garment may touch the frame over this share of the photo's shorter side. `Block` completes
+    /// a half that is cut from the other one, and refuses what is cut on both.
+    #[param(default = 0.3, min = 0.0, max = 4.0)]
     pub touch: f64,
+    /// Whether a network that has learnt what garments look like is one of the methods.
+    #[param(default = true)]
+    pub network: bool,
     /// Places on the garment, by photo, as shares of width and height from the left upper corner:
     /// which of several things is meant.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
@@ -186,7 +191,8 @@ impl Auto {
         cx.check()?;
         let given =
             given.map(|mask| same_size(mask, photo).map(|()| at_size(&mask.pixels, &small))).transpose()?;
-        let found = methods(&small, given, cx)?;
+        let seen = self.network.then(|| network::seen(photo)).transpose()?;
+        let found = methods(&small, given, seen.as_ref(), cx)?;
         cx.progress(0.6, "methods compared");
         let Some(choice) = choose(&small, &large, &found, cx)? else {
             return Err(no_garment(photo, "no method parts it from the ground along the frame", NEXT));
@@ -197,6 +203,10 @@ impl Auto {
         cx.figure("agreement", evidence.agreement, "");
         cx.figure("edges", 100.0 * evidence.support, "% of the outline");
         cx.figure("symmetry", evidence.symmetry, "");
+        let large = match seen.filter(|seen| network::agrees(&small, &coarse.mask, seen)) {
+            Some(seen) => network::with_odds(large, &seen),
+            None => large,
+        };
         let cut = GraphCut::default();
         let (fine, inlets) =
             with_inlets(&cut.fine(&large, coarse, cx)?, &cut.raw_at(&large, coarse, cx)?, large.w);
@@ -272,6 +282,6 @@ fn opened(mut mask: GrayImage) -> GrayImage {
 /// Cancelled.
 pub fn candidates(photo: &Photo, cx: &Context) -> Result<Vec<(&'static str, GrayImage)>, StageError> {
     let small = SmallPhoto::of(photo, 200);
-    let found = methods(&small, None, cx)?;
+    let found = methods(&small, None, Some(&network::seen(photo)?), cx)?;
     Ok(found.into_iter().map(|f| (f.name, picture(&f.mask, small.w, small.h))).collect())
 }

@@ -8,6 +8,9 @@
 //! skirts, shorts and vests tell little, so that a short garment with few girths may fit several
 //! sizes; the body is a woman's or a child's.
 
+use super::elastic::is_drawn_in;
+use super::likely::SeenPhoto;
+use super::wearable::NARROWEST;
 use super::{Block, BlockStyle, FRONT, Fitted, Front, Sides, Waist, refusal};
 use crate::style::block::template::complete::Complete;
 use crate::style::block::template::fit::Fit;
@@ -73,6 +76,8 @@ const SHORTS: f64 = 0.55;
 const SLEEVE: [f64; 2] = [0.44, 0.04];
 /// What a single figure adds at most.
 const MOST: f64 = 9.0;
+/// What a size adds that is too large to wear the garment at all.
+const REFUSED: f64 = 100.0;
 /// A mean square beyond this is told: no body of the table wears it as usual.
 const ODD: f64 = 5.0;
 /// No garment is wider around chest or waist, or longer, metres: half as much again as the largest
@@ -97,7 +102,7 @@ const SPREAD: f64 = 4.0;
 /// it was taken for. State a body of your own where you know the wearer.
 #[stage(
     role = Body,
-    version = 8,
+    version = 9,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -107,7 +112,7 @@ pub struct Fitting {
     #[param(default = BlockStyle::Auto)]
     pub(super) style: BlockStyle,
     /// Whether the half that the frame cuts is measured by the other one, as `Block` cuts it.
-    #[param(default = Complete::Nothing)]
+    #[param(default = Complete::Mirror)]
     pub(super) complete: Complete,
     /// Length of the mesh's edges; small bodies get shorter ones.
     #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades, finer = "less")]
@@ -127,6 +132,7 @@ impl Fitting {
     ) -> Result<Body, StageError> {
         let front = outlines.get(FRONT).ok_or_else(refusal::no_front)?;
         let photo = photos.as_ref().and_then(|all| all.get(FRONT));
+        let photo = photo.map(|photo| SeenPhoto::of(photo, self.network)).transpose()?;
         let fitted = |stray, complete| {
             let block = Block {
                 style: self.style,
@@ -137,7 +143,7 @@ impl Fitting {
                 front: Front::Whole,
                 network: self.network,
             };
-            block.fitted(FRONT, front, photo, self.style.forms(), &cx.for_entry(FRONT))
+            block.fitted(FRONT, front, photo.as_ref(), self.style.forms(), &cx.for_entry(FRONT))
         };
         let other = match self.complete {
             Complete::Nothing => Complete::Mirror,
@@ -228,6 +234,9 @@ pub(super) fn mannequin(
 /// The refusal, with how to say what the garment is.
 fn say(e: StageError) -> StageError {
     let lay = e.hint.clone().unwrap_or_default();
+    if lay.contains("say what it is") {
+        return e;
+    }
     e.hint(format!("{lay}; or say what it is: --set 'style.style=Vest' --set 'body.style=Vest'"))
 }
 
@@ -255,6 +264,8 @@ impl Tape {
         // Skirts and legs begin at the waist; of a dress it is where the skirt ends.
         let waist = at(EdgeRole::Waist).map(across).or_else(|| at(EdgeRole::Skirt).map(|k| across(k + 1)));
         let hip = fit.hip(form);
+        // What an elastic draws in tells nothing of who wears it.
+        let waist = waist.filter(|w| !hip.is_some_and(|hip| is_drawn_in(*w, hip)));
         let length = match [EdgeRole::Neck, EdgeRole::Skirt, EdgeRole::Inseam, EdgeRole::Outseam].map(at) {
             [Some(_), Some(_), ..] => Some((high - low, DRESS)),
             [Some(_), None, Some(_), _] => Some((high - low, TRUNK)),
@@ -286,7 +297,10 @@ impl Tape {
         let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);
         let all: Vec<f64> =
             (0..3).filter_map(girth).chain(long).chain(sleeve).map(|x| (x * x).min(MOST)).collect();
-        all.iter().sum::<f64>() / all.len().max(1) as f64 + ((height - LIKELY[0]) / LIKELY[1]).powi(2)
+        let is_too_small = |k: usize| self.girths[k].is_some_and(|g| g * 100.0 < NARROWEST * body[k]);
+        let refused = if (0..3).any(is_too_small) { REFUSED } else { 0.0 };
+        let height = (height - LIKELY[0]) / LIKELY[1];
+        all.iter().sum::<f64>() / all.len().max(1) as f64 + height * height + refused
     }
 
     /// Errors: the garment is larger than any that is worn, and so is the stated width.

@@ -23,6 +23,26 @@ pub(in crate::style) struct Fitted {
     /// The template as the garment lies.
     pub lying: Fit,
     pub frame: Option<PhotoFrame>,
+    /// What was taken apart in the outline, in words.
+    pub apart: Vec<&'static str>,
+}
+
+impl Fitted {
+    /// The fit to the same outline seen from the other side, in that one's frame.
+    pub(super) fn mirrored(&self, frame: Option<PhotoFrame>) -> Fitted {
+        let (fit, lying) = (self.fit.mirrored(), self.lying.mirrored());
+        Fitted { upright: self.upright.mirrored(), fit, lying, frame, apart: self.apart.clone() }
+    }
+}
+
+/// Whether an outline is another one seen from the other side, as that of a photo that is a mirror
+/// image is.
+pub(super) fn is_mirrored(outline: &Outline, other: &Outline) -> bool {
+    let (a, b) = (&outline.outer.points, &mirrored(other).outer.points);
+    let same = |(p, q): (&Point2, &Point2)| (p - q).norm() < SAME;
+    // Both begin anywhere.
+    let first = a.first().and_then(|p| b.iter().position(|q| same((p, q))));
+    a.len() == b.len() && first.is_some_and(|k| a.iter().zip(b.iter().cycle().skip(k)).all(same))
 }
 
 /// The outline seen from the other side: what its photo's mirror image shows.

@@ -7,7 +7,7 @@
 
 use super::BlockStyle;
 use toile_core::prelude::*;
-use toile_recognise::GarmentKind;
+use toile_recognise::{GarmentKind, SeenGarment};
 
 /// What a style's improbability adds to the score of its fit, by the natural logarithm.
 const WEIGHT: f64 = 0.4;
@@ -20,16 +20,30 @@ const SURE: f64 = 0.6;
 /// and 74 % of wrong styles are.
 const ANOTHER: f64 = 0.1;
 
-/// What the network sees in a photo.
+/// A photo, and what the network sees in it; nothing where it is not to look.
+pub(in crate::style) struct SeenPhoto<'p> {
+    pub photo: &'p Photo,
+    pub seen: Option<SeenGarment>,
+}
+
+impl<'p> SeenPhoto<'p> {
+    /// Of a photo; `network` says whether the network is to look.
+    pub(super) fn of(photo: &'p Photo, network: bool) -> Result<Self, StageError> {
+        let threads = rayon::current_num_threads();
+        let look = |photo: &Photo| toile_recognise::see(&photo.pixels, threads);
+        let seen = network.then(|| look(photo)).transpose();
+        let seen = seen.map_err(|e| StageError::internal(format!("the network: {e}")))?;
+        Ok(SeenPhoto { photo, seen })
+    }
+}
+
+/// How likely each kind is.
 pub(super) struct Likely(Vec<(GarmentKind, f64)>);
 
 impl Likely {
-    /// Of a photo.
-    pub(super) fn of(photo: &Photo) -> Result<Likely, StageError> {
-        let threads = rayon::current_num_threads();
-        let seen = toile_recognise::see(&photo.pixels, threads)
-            .map_err(|e| StageError::internal(format!("the network: {e}")))?;
-        Ok(Likely(seen.kinds().to_vec()))
+    /// Of what the network sees.
+    pub(super) fn of(seen: &SeenGarment) -> Likely {
+        Likely(seen.kinds().to_vec())
     }
 
     /// The probability that a garment of that style was seen.

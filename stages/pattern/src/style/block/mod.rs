@@ -1,12 +1,14 @@
 //! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a
 //! sewing pattern.
 //!
-//! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline,
+//! [`apart`] opens the outline between limbs that touch, [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline,
 //! [`fit`] lays the whole template over the whole outline, [`stance`] stands spread legs under the
 //! hips, [`pieces`] cuts it, [`waist`] gathers a skirt to a band or lays it in pleats ([`pleat`]),
 //! [`front`] cuts a front in halves, [`seams`] sews it, [`stand`] puts it around the body, if one
 //! can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
+mod apart;
+mod elastic;
 mod fitting;
 mod front;
 mod lay;
@@ -29,7 +31,7 @@ use front::Front;
 pub(super) use lay::Fitted;
 use lay::{mirrored, pattern};
 use leftover::Leftover;
-use likely::Likely;
+use likely::{Likely, SeenPhoto};
 use pieces::Making;
 use rayon::prelude::*;
 pub(super) use refusal::{LAY, no_front};
@@ -38,11 +40,12 @@ pub(crate) use stand::{TRUNK_BOTTOM, TRUNK_TOP};
 use tell::at_95;
 pub use template::alike::Sides;
 pub use template::complete::Complete;
-use template::fit::{Fit, Halves, fit};
+use template::fit::{Fit, Halves, fits};
 use template::form::Form;
 use template::halves::Upright;
 use template::marks::missing;
 pub(super) use template::piece_role::Layer;
+use template::seen::SeenCorners;
 use toile_core::prelude::*;
 pub use waist::Waist;
 pub(super) use wearable::check as check_wearable;
@@ -127,7 +130,7 @@ impl BlockStyle {
 /// is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 9,
+    version = 10,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -142,8 +145,8 @@ pub struct Block {
     #[param(default = 0.05, min = 0.001, max = 0.5)]
     stray: f64,
     /// Whether the half that the frame cuts is completed by the mirror image of the other. The
-    /// binariser must let the garment touch the frame for it.
-    #[param(default = Complete::Nothing)]
+    /// binariser must let the garment touch the frame for it, as `Auto` does.
+    #[param(default = Complete::Mirror)]
     complete: Complete,
     /// Whether both halves are cut as each other's mirror image, sleeves as the one that lies
     /// better, or each as it lies.
@@ -155,7 +158,8 @@ pub struct Block {
     /// Whether the front is one piece, or two halves that are closed along the middle.
     #[param(default = Front::Whole)]
     front: Front,
-    /// Whether a network looks at the photo, too, where nobody says what the garment is.
+    /// Whether a network looks at the photo, too: at what the garment is, where nobody says it, and
+    /// at where sleeves and legs end that lie against the rest.
     #[param(default = true)]
     network: bool,
 }
@@ -173,8 +177,12 @@ impl Block {
         for (name, _) in outlines.iter().filter(|(n, _)| *n != FRONT && *n != BACK) {
             cx.warn(format!("a block is cut from \"front\" and \"back\"; the photo \"{name}\" is not used"));
         }
-        let photo = |name: &str| photos.as_ref().and_then(|all| all.get(name).or_else(|| all.get(FRONT)));
-        let found = self.fitted(FRONT, front, photo(FRONT), self.style.forms(), cx)?;
+        let photo = |name: &str| {
+            let photo = photos.as_ref().and_then(|all| all.get(name).or_else(|| all.get(FRONT)));
+            photo.map(|photo| SeenPhoto::of(photo, self.network)).transpose()
+        };
+        let seen = photo(FRONT)?;
+        let found = self.fitted(FRONT, front, seen.as_ref(), self.style.forms(), cx)?;
         self.tell(FRONT, front, &found, cx);
         self.explains(FRONT, &found, cx)?;
         let (name, form, before) = found;
@@ -184,15 +192,31 @@ impl Block {
                 form.word
             ));
         }
-        check_wearable(name, form, &before.fit, body, photo(FRONT))?;
-        let mirrored = mirrored(front);
-        let back = outlines.get(BACK).unwrap_or(&mirrored);
-        let found = self.fitted(BACK, back, photo(BACK), vec![(name, form)], cx)?;
-        self.tell(BACK, back, &found, cx);
-        if outlines.get(BACK).is_some_and(|o| !o.frame.is_some_and(|f| f.mirrored)) {
-            self.explains(BACK, &found, cx)?;
+        let mut before = before;
+        if let Some([lies, cut]) = elastic::stretched(&mut before.fit, form, body) {
+            cx.note(format!(
+                "the waist measures {:.0} cm around as it lies, drawn in by its elastic: it is cut {:.0} cm wide, as its wearer needs it",
+                lies * 100.0,
+                cut * 100.0
+            ));
         }
-        let (.., behind) = found;
+        check_wearable(name, form, &before.fit, body, seen.as_ref().map(|s| s.photo))?;
+        let behind = match outlines.get(BACK).filter(|back| !lay::is_mirrored(back, front)) {
+            None => {
+                let frame = outlines.get(BACK).map_or_else(|| mirrored(front).frame, |back| back.frame);
+                before.mirrored(frame)
+            }
+            Some(back) => {
+                let found = self.fitted(BACK, back, photo(BACK)?.as_ref(), vec![(name, form)], cx)?;
+                self.tell(BACK, back, &found, cx);
+                if !back.frame.is_some_and(|f| f.mirrored) {
+                    self.explains(BACK, &found, cx)?;
+                }
+                let (.., mut behind) = found;
+                elastic::stretched(&mut behind.fit, form, body);
+                behind
+            }
+        };
         cx.check()?;
         let layers = [(Layer::Front, before), (Layer::Back, behind)];
         pattern(form, &layers, Making { waist: self.waist, front: self.front }, body, cx)
@@ -211,16 +235,17 @@ impl Block {
         &self,
         panel: &str,
         outline: &Outline,
-        photo: Option<&Photo>,
+        photo: Option<&SeenPhoto<'_>>,
         forms: Vec<(&'static str, &'static Form)>,
         cx: &Context,
     ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
         let found = self.best(panel, outline, photo, forms, cx)?;
         let (name, form, Fitted { upright, fit, .. }) = &found;
-        let times = match upright.unseen.contains(&true) && photo.is_some_and(|p| p.garment_width.is_some()) {
-            true => template::complete::widened(fit, upright, outline),
-            false => 1.0,
-        };
+        let times =
+            match upright.unseen.contains(&true) && photo.is_some_and(|p| p.photo.garment_width.is_some()) {
+                true => template::complete::widened(fit, upright, outline),
+                false => 1.0,
+            };
         match times == 1.0 {
             true => Ok(found),
             false => {
@@ -229,40 +254,66 @@ impl Block {
         }
     }
 
-    /// The best of the forms, fitted.
+    /// The best of the forms, fitted to the outline as it is, or opened where the network sees that
+    /// a limb lies against the rest.
     pub(super) fn best(
         &self,
         panel: &str,
         outline: &Outline,
-        photo: Option<&Photo>,
+        photo: Option<&SeenPhoto<'_>>,
         forms: Vec<(&'static str, &'static Form)>,
         cx: &Context,
     ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
-        let auto = forms.len() > 1;
-        let likely = photo.filter(|_| auto && self.network).map(Likely::of).transpose()?;
-        let mut upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
-        if self.complete == Complete::Mirror {
-            let photo = photo.ok_or_else(|| template::complete::no_frame(panel))?;
-            template::complete::mark(&mut upright, outline, photo.pixels.dimensions(), panel)?;
+        let seen = photo.and_then(|photo| photo.seen.as_ref());
+        let likely = seen.filter(|_| forms.len() > 1).map(Likely::of);
+        let whole = self.laid(panel, outline, photo, &forms, likely.as_ref(), cx);
+        let Some(opened) = seen.and_then(|seen| apart::opened(outline, seen)) else { return whole };
+        let apart = self.laid(panel, &opened.outline, photo, &forms, likely.as_ref(), cx);
+        let apart = apart.map(|(name, form, fitted)| (name, form, Fitted { apart: opened.what, ..fitted }));
+        let price = |(name, _, fitted): &(&str, &Form, Fitted)| {
+            fitted.lying.score + likely.as_ref().map_or(0.0, |l| l.price(name))
+        };
+        match (whole, apart) {
+            (Ok(whole), Ok(apart)) => Ok(if price(&apart) < price(&whole) { apart } else { whole }),
+            (whole, apart) => whole.or(apart),
         }
+    }
+
+    /// The best of the forms, fitted to an outline.
+    fn laid(
+        &self,
+        panel: &str,
+        outline: &Outline,
+        photo: Option<&SeenPhoto<'_>>,
+        forms: &[(&'static str, &'static Form)],
+        likely: Option<&Likely>,
+        cx: &Context,
+    ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
+        let auto = forms.len() > 1;
+        let mut upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
+        if let Some(photo) = photo.filter(|_| self.complete == Complete::Mirror) {
+            template::complete::mark(&mut upright, outline, photo.photo.pixels.dimensions(), panel)?;
+        }
+        let seen = photo.and_then(|photo| photo.seen.as_ref()).zip(outline.frame.as_ref());
+        let corners = seen.map(|(seen, frame)| SeenCorners::of(seen, &upright, frame));
         cx.check()?;
-        let said = |name: &str| !auto || likely.as_ref().is_some_and(|l| l.is_sure_of(name));
+        let said = |name: &str| !auto || likely.is_some_and(|l| l.is_sure_of(name));
         let size = upright.size;
         let limit = |name: &str| self.stray * size * if said(name) { 1.0 } else { UNSAID };
         let found =
-            tried(&upright, panel, &forms, Halves::Both, likely.as_ref()).and_then(|best| {
-                match strays(&best.2) > limit(best.0) {
+            tried(&upright, panel, forms, Halves::Both, likely, corners.as_ref()).and_then(
+                |best| match strays(&best.2) > limit(best.0) {
                     true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), auto)),
                     false => Ok(best),
-                }
-            });
+                },
+            );
         let doubtful = match &found {
             Ok((_, form, fit)) => template::alike::differ(fit, form, upright.size),
             Err(_) => true,
         };
         let one = || {
             let upright = upright.about_its_rows()?;
-            let best = tried(&upright, panel, &forms, Halves::Better, likely.as_ref()).ok()?;
+            let best = tried(&upright, panel, forms, Halves::Better, likely, None).ok()?;
             let (other, limit) = (1 - best.2.judged?, limit(best.0));
             let is_sound = strays(&best.2) <= limit * HALF && best.2.near(&upright, other, limit) >= OTHER;
             is_sound.then_some((best, upright))
@@ -274,7 +325,7 @@ impl Block {
             Some(found) => found,
             None => (found?, upright),
         };
-        if let Some((kind, p)) = likely.as_ref().and_then(|l| l.instead_of(name)) {
+        if let Some((kind, p)) = likely.and_then(|l| l.instead_of(name)) {
             return Err(refusal::another(panel, form, likely::word(kind), p));
         }
         let mut cut = fit.clone();
@@ -282,7 +333,7 @@ impl Block {
         if self.sides == Sides::Alike {
             template::alike::alike(&mut cut, form, fit.astray(&upright, form));
         }
-        Ok((name, form, Fitted { upright, fit: cut, lying: fit, frame: outline.frame }))
+        Ok((name, form, Fitted { upright, fit: cut, lying: fit, frame: outline.frame, apart: Vec::new() }))
     }
 
     /// Refuses or tells what the template does not explain.
@@ -303,11 +354,12 @@ impl Block {
 
     /// Tells how the fit lies.
     fn tell(&self, panel: &str, outline: &Outline, (_, form, fitted): &(&str, &Form, Fitted), cx: &Context) {
-        let Fitted { upright, lying: fit, .. } = fitted;
+        let Fitted { upright, lying: fit, apart, .. } = fitted;
         tell::figures(panel, form, fit, cx);
         // What is seen in a mirror is told once.
         if panel == FRONT || !outline.frame.is_some_and(|f| f.mirrored) {
             tell::astray(panel, form, fit, upright.size, cx);
+            tell::apart(panel, apart, cx);
             match fit.judged {
                 Some(side) => tell::one_half(panel, form, side, cx),
                 None => tell::uneven(panel, form, fit, upright.size, self.sides, cx),
@@ -331,8 +383,9 @@ fn tried<'f>(
     forms: &[(&'static str, &'f Form)],
     halves: Halves,
     likely: Option<&Likely>,
+    corners: Option<&SeenCorners>,
 ) -> Result<(&'static str, &'f Form, Fit), StageError> {
-    let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(upright, form, halves)).collect();
+    let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(upright, form, halves, corners)).collect();
     let (mut found, mut reasons) = (Vec::new(), Vec::new());
     for ((name, form), result) in forms.iter().zip(tried) {
         match result {
@@ -341,15 +394,27 @@ fn tried<'f>(
         }
     }
     let price = |(name, _, fit): &(&str, &Form, Fit)| fit.score + likely.map_or(0.0, |l| l.price(name));
-    let best = found.into_iter().min_by(|a, b| price(a).total_cmp(&price(b)));
+    // What the network is sure that it is not comes last, however well it fits.
+    let is_another = |(name, ..): &(&str, &Form, Fit)| likely.is_some_and(|l| l.instead_of(name).is_some());
+    let order = |a: &_, b: &_| is_another(a).cmp(&is_another(b)).then(price(a).total_cmp(&price(b)));
+    let best = found.into_iter().min_by(order);
     best.ok_or_else(|| refusal::none(panel, &reasons))
 }
 
-/// A fit that the form allows, or why there is none.
-fn sound(upright: &Upright, form: &Form, halves: Halves) -> Result<Fit, &'static str> {
-    let fit = fit(upright, form, halves).ok_or("its edges are not in their usual places")?;
-    match form.marks.iter().find_map(|m| missing(&fit, m)) {
-        Some(reason) => Err(reason),
-        None => Ok(fit),
+/// The better fit of those that the form allows, or why there is none.
+fn sound(
+    upright: &Upright,
+    form: &Form,
+    halves: Halves,
+    corners: Option<&SeenCorners>,
+) -> Result<Fit, &'static str> {
+    let mut reason = "its edges are not in their usual places";
+    let mut allowed = Vec::new();
+    for fit in fits(upright, form, halves, corners) {
+        match form.marks.iter().find_map(|m| missing(&fit, m)) {
+            Some(lacks) => reason = lacks,
+            None => allowed.push(fit),
+        }
     }
+    allowed.into_iter().min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(reason)
 }

@@ -50,6 +50,16 @@ fn and(words: &[String]) -> String {
     }
 }
 
+/// Tells what was taken apart along a border that only the network sees.
+pub(super) fn apart(panel: &str, what: &[&'static str], cx: &Context) {
+    if !what.is_empty() {
+        let list = and(&what.iter().map(|w| (*w).to_owned()).collect::<Vec<String>>());
+        cx.note(format!(
+            "\"{panel}\" is cut as if {list} lay apart: the network sees where the one ends and the other begins; --set 'style.network=false' keeps the outline as it is"
+        ));
+    }
+}
+
 /// Tells that one half alone looks like the garment; side 0 lies to the right as one looks at the
 /// photo.
 pub(super) fn one_half(panel: &str, form: &Form, side: usize, cx: &Context) {

@@ -10,7 +10,7 @@ use toile_body::convex_hull;
 use toile_core::prelude::*;
 
 /// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
-const NARROWEST: f64 = 0.8;
+pub(super) const NARROWEST: f64 = 0.8;
 /// Half the thickness of the slice in which an arm is measured, and how far from its axis its skin
 /// may lie, metres.
 const SLICE: f64 = 0.012;

@@ -13,7 +13,8 @@
 use crate::style::block::template::bow::Bow;
 use crate::style::block::template::form::{EdgeForm, Form};
 use crate::style::block::template::halves::Upright;
-use crate::style::block::template::segment::{Cut, cut};
+use crate::style::block::template::seen::SeenCorners;
+use crate::style::block::template::segment::{self, Cut, belief, cut};
 use nalgebra::{DMatrix, DVector, Rotation2};
 use toile_core::artifact::{EdgeRole, Point2, Vector2};
 
@@ -84,6 +85,13 @@ impl Fit {
         Rotation2::new(self.turn) * Point2::new(u, p.y)
     }
 
+    /// The same template over the outline's mirror image.
+    pub(crate) fn mirrored(&self) -> Fit {
+        let [right, left] = self.sides.clone();
+        let judged = self.judged.map(|side| 1 - side);
+        Fit { sides: [left, right], turn: -self.turn, shift: -self.shift, judged, ..self.clone() }
+    }
+
     /// With what its edges cost: how unusual they are, and how many.
     fn priced(self, unusual: f64, form: &Form) -> Fit {
         Fit { score: self.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64, ..self }
@@ -147,8 +155,38 @@ impl Fit {
     }
 }
 
-/// The best fit of a form; `None` where its edges cannot be laid over the outline at all.
-pub(crate) fn fit(upright: &Upright, form: &Form, halves: Halves) -> Option<Fit> {
+/// The fits of a form: the best from the outline, and that from the landmarks that are seen; none
+/// where its edges cannot be laid over the outline at all.
+pub(crate) fn fits(
+    upright: &Upright,
+    form: &Form,
+    halves: Halves,
+    corners: Option<&SeenCorners>,
+) -> Vec<Fit> {
+    let corners = corners.filter(|_| halves == Halves::Both);
+    let by_landmarks = corners.and_then(|corners| by_landmarks(upright, form, corners));
+    by_outline(upright, form, halves).into_iter().chain(by_landmarks).collect()
+}
+
+/// The fit from the landmarks that are seen.
+fn by_landmarks(upright: &Upright, form: &Form, corners: &SeenCorners) -> Option<Fit> {
+    let shift = corners.shift(form)?;
+    let [one, other] = corners.edges(form, shift)?.map(|edges| Cut { edges, cost: 0.0 });
+    let mut problem = Problem::new(upright, form, [&one, &other], None);
+    problem.at[SHIFT] = shift;
+    let fit = problem.solve();
+    let unusual = |(bow, e): (&Bow, &EdgeForm)| {
+        let bows = bow.bow.iter().map(|b| ((b - e.bow[0]) / e.bow[1]).powi(2)).sum::<f64>();
+        belief(e, bow.a, bow.b, upright.size) + bows
+    };
+    let edges = fit.sides.iter().flat_map(|side| side.iter().zip(form.edges)).map(unusual).sum::<f64>();
+    let missed = fit.score * 0.5 * (SPREAD / segment::SPREAD).powi(2);
+    let points = upright.points.len() as f64;
+    (edges < segment::NEVER).then(|| fit.priced(edges / points + missed, form))
+}
+
+/// The best fit of a form from the cuts of both halves of the outline.
+fn by_outline(upright: &Upright, form: &Form, halves: Halves) -> Option<Fit> {
     let cuts = [0, 1].map(|k| cut(&upright.halves[k], form, upright.size));
     let points = upright.halves[0].len() as f64;
     if halves == Halves::Better {
@@ -400,6 +438,9 @@ fn own(edges: &[EdgeForm], k: usize) -> bool {
     edges[k].own_end || (k > 0 && edges[k - 1].own_end)
 }
 
+/// Which parameter of a template is the place of its axis.
+const SHIFT: usize = 1;
+
 /// Parameters of a template: the axis, the heights of its ends on the axis, and corners and bows of
 /// each side.
 fn packed(form: &Form, sides: [&[Bow]; 2]) -> DVector<f64> {
@@ -431,5 +472,5 @@ fn model(form: &Form, at: &DVector<f64>) -> TemplateModel {
         };
         (0..=last).map(edge).collect()
     });
-    TemplateModel { sides, turn: at[0], shift: at[1] }
+    TemplateModel { sides, turn: at[0], shift: at[SHIFT] }
 }

@@ -68,6 +68,28 @@ impl Upright {
         })
     }
 
+    /// The mirror image of the outline.
+    pub(crate) fn mirrored(&self) -> Upright {
+        let [right, left] = self.halves.clone();
+        let halves = [left, right];
+        // Both begin where the axis meets the outline below, and run the other way around.
+        let n = self.points.len();
+        let at = |k: usize| (n - k) % n;
+        Upright {
+            points: joined(&halves),
+            unseen: (0..n).map(|k| self.unseen[at(k)]).collect(),
+            tilt: -self.tilt,
+            centre: Point2::new(-self.centre.x, self.centre.y),
+            size: self.size,
+            halves,
+        }
+    }
+
+    /// A place of the outline as it was given, upright.
+    pub(crate) fn stood(&self, p: Point2) -> Point2 {
+        Point2::from(Rotation2::new(-self.tilt.to_radians()) * (p - self.centre))
+    }
+
     /// A place of the upright outline in the outline as it was given.
     pub(crate) fn given(&self, p: Point2) -> Point2 {
         self.centre + (Rotation2::new(self.tilt.to_radians()) * p).coords

@@ -11,5 +11,6 @@ pub(crate) mod form;
 pub(crate) mod halves;
 pub(crate) mod marks;
 pub(crate) mod piece_role;
+pub(crate) mod seen;
 pub(crate) mod segment;
 pub(crate) mod stance;

@@ -12,13 +12,13 @@ use crate::style::block::template::form::{EdgeForm, Form};
 use toile_core::artifact::Point2;
 
 /// Spread of an outline about its template, as a share of the garment's size.
-const SPREAD: f64 = 0.008;
+pub(crate) const SPREAD: f64 = 0.008;
 /// What one point adds at most, in squared spreads.
 const MOST: f64 = 9.0;
 /// Weight of a belief beside the points of the outline, of which a half has about a hundred.
 const BELIEF: f64 = 4.0;
 /// A sum of squares that no cut reaches.
-const NEVER: f64 = 1e12;
+pub(crate) const NEVER: f64 = 1e12;
 
 /// A half of an outline, cut.
 #[derive(Debug, Clone)]

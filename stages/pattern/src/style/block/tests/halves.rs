@@ -40,10 +40,12 @@ fn a_stated_width_is_that_of_the_whole_garment() {
 }
 
 #[test]
-fn what_has_no_frame_is_not_completed() {
-    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
-    let e = cut(&stage, cut_shirt()).unwrap_err();
-    assert_eq!(e.to_string(), "there is no photo of \"front\" whose frame could cut it");
+fn an_outline_without_a_photo_is_cut_as_it_lies() {
+    let cuffs = |complete| {
+        let (pattern, ..) = cut(&Block { complete, ..of(BlockStyle::TShirt) }, garment(TEE)).unwrap();
+        length(&pattern, "left_sleeve_front", "cuff")
+    };
+    assert_eq!(cuffs(Complete::Mirror).to_bits(), cuffs(Complete::Nothing).to_bits());
 }
 
 #[test]
@@ -133,4 +135,40 @@ fn sides_that_are_kept_apart_are_not_mirrored() {
     let stage = Block { sides: Sides::AsTheyLie, ..of(BlockStyle::TShirt) };
     let e = cut(&stage, one_sleeve()).unwrap_err();
     assert_eq!(e.message, "\"front\" does not look like a T-shirt: its sides run up without an armpit");
+}
+
+#[test]
+fn a_back_that_is_the_fronts_mirror_image_is_cut_from_the_same_fit() {
+    let stage = Block { sides: Sides::AsTheyLie, ..of(BlockStyle::TShirt) };
+    let given = |back: bool| {
+        let front = outline(folded());
+        let behind = back.then(|| ("back".to_owned(), mirrored(&front)));
+        let sides: Set<Outline> = [("front".to_owned(), front)].into_iter().chain(behind).collect();
+        stage.run(sides, &body(), None, &Context::quiet()).unwrap()
+    };
+    let (pattern, outlines, _) = given(true);
+    assert_eq!(pattern, given(false).0);
+    for (front, back) in
+        [("left_sleeve_front", "left_sleeve_back"), ("right_sleeve_front", "right_sleeve_back")]
+    {
+        let [a, b] = [front, back].map(|piece| length(&pattern, piece, "cuff"));
+        assert!((a - b).abs() < 1e-6, "{front}: {a:.2} {b:.2}");
+    }
+    assert!(outlines.get("back").unwrap().frame.unwrap().mirrored);
+}
+
+/// A skirt whose waist is drawn in to less than half of its hip.
+const DRAWN_IN: &[[f64; 2]] = &[[0.0, 0.0], [300.0, 0.0], [290.0, 380.0], [130.0, 520.0], [0.0, 520.0]];
+
+#[test]
+fn a_waist_that_an_elastic_draws_in_is_cut_as_wide_as_its_wearer_needs_it() {
+    let waist = |girth: f64| {
+        let body = Body { measurements: [("waist".to_owned(), girth)].into(), ..body() };
+        let front = [("front".to_owned(), outline(garment(DRAWN_IN)))].into_iter().collect();
+        let (pattern, ..) = of(BlockStyle::Skirt).run(front, &body, None, &Context::quiet()).unwrap();
+        ["front", "back"].map(|piece| length(&pattern, piece, "waist")).iter().sum::<f64>()
+    };
+    // It lies 520 mm around, and one of 540 mm wears it so; one of 700 mm does not.
+    assert!((waist(0.54) - 520.0).abs() < 20.0, "{:.1}", waist(0.54));
+    assert!((waist(0.7) - 721.0).abs() < 20.0, "{:.1}", waist(0.7));
 }
