@@ -67,8 +67,8 @@ static NETWORK: OnceLock<Result<PartsNetwork, RecogniseError>> = OnceLock::new()
 /// The photo has no pixels; the network's file is not the one that the program was built for; or
 /// those of [`PartsNetwork::see`].
 pub fn see(photo: &RgbImage, threads: usize) -> Result<SeenGarment, RecogniseError> {
-    // Read outside of the lock: a thread that waits for its helpers there may take up another photo,
-    // which would then wait for this one.
+    // Read outside of the lock: a thread that waits for its helpers there may take up another
+    // photo, which would then wait for this one.
     let network = match NETWORK.get() {
         Some(network) => network,
         None => {

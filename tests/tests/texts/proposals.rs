@@ -154,7 +154,7 @@ fn a_garment_that_the_frame_touches_is_taken_with_the_line_that_is_offered() {
 fn a_doubtful_garment_is_taken_with_the_line_that_is_offered() {
     // A garment of its ground's colours, out of focus.
     let pale = RgbImage::from_fn(700, 620, pale);
-    helps(&imageops::blur(&pale, 6.0), "it is not sure where the garment in");
+    helps(&imageops::blur(&pale, 6.0), "lies where the photo");
 }
 
 /// A rectangle hardly darker than its noisy ground, with one side that fades.

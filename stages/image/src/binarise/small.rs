@@ -6,7 +6,6 @@
 //!
 //! Cost: one look at every pixel of the photo, 12 megapixels take about 15 ms on two cores.
 
-use super::background::place;
 use super::tone::OPAQUE;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -55,12 +54,6 @@ impl SmallPhoto {
             odds: None,
             scale: (f64::from(pw) / w as f64, f64::from(ph) / h as f64),
         }
-    }
-
-    /// ln of how much likelier garment is than ground at a pixel, whatever its colour: as is told, or
-    /// by its place alone.
-    pub(super) fn odds(&self, i: usize) -> f64 {
-        self.odds.as_ref().map_or_else(|| place(self, i), |odds| odds[i])
     }
 
     /// The colours of the marked pixels that are not transparent.

@@ -48,7 +48,7 @@ pub(super) fn methods(
     }
     if let Some(seen) = seen {
         let small = with_odds(small.clone(), seen);
-        let start = (0..small.lab.len()).map(|i| small.odds(i) > 0.0).collect::<Vec<bool>>();
+        let start: Vec<bool> = small.odds.iter().flatten().map(|odds| *odds > 0.0).collect();
         let outside: Vec<bool> = start.iter().map(|on| !on).collect();
         if start.contains(&true) && outside.contains(&true) {
             add("network", cut.settle(small, (start, outside), cx)?.map(|c| c.mask));

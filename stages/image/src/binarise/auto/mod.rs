@@ -3,15 +3,15 @@
 //! Seven methods, and the mask of an earlier stage where there is one, most of which share neither
 //! model nor start, look at the photo at a reduced size (`methods`): a graph cut, the ground's
 //! colours, a split of colours in two, the distance to the rim's colours, a random walk that sees
-//! edges alone, a graph cut from that walk's end, and what a network has learnt (`network`). For each mask `evidence` asks how far others
-//! agree with it, how much of its contour lies on an edge of the photo, and how alike its halves
-//! are. The best is taken: thin parts without a mirror image are taken off it and pairs of straps
-//! are put back (`thin`), wedges of ground between sleeve and side are opened (`wedge`), its
-//! boundary is cut at twice the size, inlets of ground between legs are opened up to their tips, it
-//! is set at the photo's own size, and a strip of ground between hem and frame is found (`frame`).
-//! The product of the evidence is the confidence. Below the least that is requested, and where the
-//! mask looks like a print on something larger (`larger`), the photo is refused with a picture of
-//! the doubt (`doubt`).
+//! edges alone, a graph cut from that walk's end, and what a network has learnt (`network`). For
+//! each mask `evidence` asks how far others agree with it, how much of its contour lies on an edge
+//! of the photo, and how alike its halves are. The best is taken: thin parts without a mirror image
+//! are taken off it and pairs of straps are put back (`thin`), wedges of ground between sleeve and
+//! side are opened (`wedge`), its boundary is cut at twice the size, inlets of ground between legs
+//! are opened up to their tips, it is set at the photo's own size, and a strip of ground between
+//! hem and frame is found (`frame`). The product of the evidence is the confidence. Below the least
+//! that is requested, and where the mask looks like a print on something larger (`larger`), the
+//! photo is refused with a picture of the doubt (`doubt`).
 //!
 //! Agreement of independent methods is far better evidence than any one method's own confidence.
 //!
@@ -84,8 +84,8 @@ pub struct Auto {
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 1.0, min = 0.0, max = 1.0)]
     pub holes: f64,
-    /// The garment may touch the frame over this share of the photo's shorter side. `Block` completes
-    /// a half that is cut from the other one, and refuses what is cut on both.
+    /// The garment may touch the frame over this share of the photo's shorter side. `Block`
+    /// completes a half that is cut from the other one, and refuses what is cut on both.
     #[param(default = 0.3, min = 0.0, max = 4.0)]
     pub touch: f64,
     /// Whether a network that has learnt what garments look like is one of the methods.

@@ -3,9 +3,9 @@
 //!
 //! The network (`toile_recognise`) gives each place of the photo a probability to be garment, at
 //! some hundredth of the photo's width. A graph cut that begins with it, and to which it gives the
-//! odds of each pixel beside its colour, sets the boundary on the photo's edges. It shares no colour
-//! model's start and no random walk with the other methods: it has learnt what garments look like,
-//! and knows no colour of this photo. Cost: 40 ms, and a graph cut.
+//! odds of each pixel beside its colour, sets the boundary on the photo's edges. It shares no
+//! colour model's start and no random walk with the other methods: it has learnt what garments look
+//! like, and knows no colour of this photo. Cost: 40 ms, and a graph cut.
 
 use super::super::small::SmallPhoto;
 use super::evidence::overlap;
@@ -38,8 +38,8 @@ pub(super) fn with_odds(small: SmallPhoto, seen: &SeenGarment) -> SmallPhoto {
     SmallPhoto { odds: Some(odds), ..small }
 }
 
-/// Whether a mask is what the network sees but for its border, so that the network may have a say in
-/// where that runs.
+/// Whether a mask is what the network sees but for its border, so that the network may have a say
+/// in where that runs.
 pub(super) fn agrees(small: &SmallPhoto, mask: &[bool], seen: &SeenGarment) -> bool {
     let garment: Vec<bool> = seen.mask(small.w, small.h).iter().map(|p| *p > 0.5).collect();
     overlap(mask, &garment) >= AGREES

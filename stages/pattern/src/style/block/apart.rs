@@ -2,11 +2,12 @@
 //! that lie together.
 //!
 //! People lay sleeves along the sides and legs beside each other; the outline then shows no armpit
-//! and no fork, and no template with sleeves or legs can be laid over it. The network sees where one
-//! part ends and the next begins. From the armpit, or the fork, to the outline the way is sought
-//! that runs best along the border of both parts, or over ground: the shortest way over a grid whose
-//! cells cost less the likelier the border is (Dijkstra 1959, used for borders as by Mortensen and
-//! Barrett 1995). The outline is led along both sides of it, as a wedge that is closed at the armpit.
+//! and no fork, and no template with sleeves or legs can be laid over it. The network sees where
+//! one part ends and the next begins. From the armpit, or the fork, to the outline the way is
+//! sought that runs best along the border of both parts, or over ground: the shortest way over a
+//! grid whose cells cost less the likelier the border is (Dijkstra 1959, used for borders as by
+//! Mortensen and Barrett 1995). The outline is led along both sides of it, as a wedge that is
+//! closed at the armpit.
 //!
 //! Cost: some 20 ms. Limits: the border is as true as the network; what a limb covers stays hidden.
 
@@ -181,8 +182,8 @@ impl Grid {
 }
 
 /// The way from a place within a closed line to the line that runs best along a border, of which
-/// `border` gives how likely it is at a place, nothing where no way leads; none from a place that is
-/// not within the line.
+/// `border` gives how likely it is at a place, nothing where no way leads; none from a place that
+/// is not within the line.
 fn way(points: &[Point2], from: Point2, border: impl Fn(Point2) -> Option<f64>) -> Option<Vec<Point2>> {
     let grid = Grid::over(points);
     let within = grid.within(points);
@@ -222,8 +223,8 @@ fn way(points: &[Point2], from: Point2, border: impl Fn(Point2) -> Option<f64>) 
 }
 
 /// A closed line, counter-clockwise, led into itself along both sides of a way that ends at it; the
-/// sides are so far apart at its end as twice `open`, and meet at its start. `bare` counts the steps
-/// from a place of the way to a side over which the wedge widens.
+/// sides are so far apart at its end as twice `open`, and meet at its start. `bare` counts the
+/// steps from a place of the way to a side over which the wedge widens.
 fn wedge(points: &[Point2], way: &[Point2], open: f64, bare: &dyn Fn(Point2, Vector2) -> f64) -> Vec<Point2> {
     let Some(end) = way.last() else { return points.to_vec() };
     let near = |i: usize| (points[i] - end).norm_squared();

@@ -6,11 +6,12 @@
 //! elastic a photo does not show. Limits: a waist that is too narrow because the scale is wrong, of
 //! a garment whose hip fits all the same, is taken for an elastic one.
 
-use super::wearable::NARROWEST;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
+/// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
+pub(super) const NARROWEST: f64 = 0.8;
 /// A waist narrower than this share of the hip is drawn in: of bodies it is 0.7 at least, and
 /// garments are cut straighter than bodies.
 const DRAWN_IN: f64 = 0.66;

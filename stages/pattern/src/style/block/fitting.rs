@@ -8,9 +8,8 @@
 //! skirts, shorts and vests tell little, so that a short garment with few girths may fit several
 //! sizes; the body is a woman's or a child's.
 
-use super::elastic::is_drawn_in;
+use super::elastic::{NARROWEST, is_drawn_in};
 use super::likely::SeenPhoto;
-use super::wearable::NARROWEST;
 use super::{Block, BlockStyle, FRONT, Fitted, Front, Sides, Waist, refusal};
 use crate::style::block::template::complete::Complete;
 use crate::style::block::template::fit::Fit;

@@ -3,14 +3,13 @@
 //! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at
 //! its armpits, its waist and hip, and its cuffs; what a closure would open is not known.
 
+use super::elastic::NARROWEST;
 use super::fitting::KEPT;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
 use toile_body::convex_hull;
 use toile_core::prelude::*;
 
-/// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
-pub(super) const NARROWEST: f64 = 0.8;
 /// Half the thickness of the slice in which an arm is measured, and how far from its axis its skin
 /// may lie, metres.
 const SLICE: f64 = 0.012;

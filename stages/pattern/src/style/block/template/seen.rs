@@ -2,9 +2,9 @@
 //!
 //! Each edge of a form ends at a corner that has a name in the photo: an armpit, the end of a cuff,
 //! the fork. Where the network sees all of them, a template is laid through them, and fitted from
-//! there. It finds what the cut of an outline ([`crate::style::block::template::segment`]) does not:
-//! a sleeve that lies along the body, a cuff among folds. Limits: corners that have no name (a hip)
-//! are set at a usual share between those that have one.
+//! there. It finds what the cut of an outline ([`crate::style::block::template::segment`]) does
+//! not: a sleeve that lies along the body, a cuff among folds. Limits: corners that have no name (a
+//! hip) are set at a usual share between those that have one.
 
 use crate::style::block::template::bow::Bow;
 use crate::style::block::template::form::Form;
