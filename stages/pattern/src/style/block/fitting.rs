@@ -264,7 +264,7 @@ impl Tape {
         let waist = at(EdgeRole::Waist).map(across).or_else(|| at(EdgeRole::Skirt).map(|k| across(k + 1)));
         let hip = fit.hip(form);
         // What an elastic draws in tells nothing of who wears it.
-        let waist = waist.filter(|w| !hip.is_some_and(|hip| is_drawn_in(*w, hip)));
+        let waist = waist.filter(|w| !hip.is_some_and(|hip| is_drawn_in(form, *w, hip)));
         let length = match [EdgeRole::Neck, EdgeRole::Skirt, EdgeRole::Inseam, EdgeRole::Outseam].map(at) {
             [Some(_), Some(_), ..] => Some((high - low, DRESS)),
             [Some(_), None, Some(_), _] => Some((high - low, TRUNK)),

@@ -38,9 +38,8 @@ const LEAST: f64 = 3.0;
 const SAME: f64 = 0.04;
 /// The share of the outline that may be cut on both sides at one height: a stray point is no cut.
 const BOTH: f64 = 0.02;
-/// A garment that touches the frame over no more than this share of its outline is not cut by it;
-/// nor one that touches it on both sides, over no more than the other.
-const TOUCHES: [f64; 2] = [0.015, 0.06];
+/// What touches the frame over no more than this share of the photo's shorter side is not cut by it.
+const TOUCHES: f64 = 0.05;
 
 /// Marks the points where the frame cuts the garment. `size` is the photo's, pixels.
 ///
@@ -60,17 +59,16 @@ pub(crate) fn mark(
         px.x < near || px.y < near || px.x > w - near || px.y > h - near
     };
     let unseen: Vec<bool> = upright.points.iter().map(on_frame).collect();
-    let touches = unseen.iter().filter(|cut| **cut).count() as f64 / unseen.len() as f64;
-    if touches <= TOUCHES[0] {
+    let n = unseen.len();
+    let lies = (0..n).filter(|k| unseen[*k] && unseen[(k + 1) % n]);
+    let along = lies.map(|k| (upright.points[(k + 1) % n] - upright.points[k]).norm()).sum::<f64>();
+    if along * frame.px_per_metre <= TOUCHES * w.min(h) {
         return Ok(());
     }
     let cut = || upright.points.iter().zip(&unseen).filter(|(_, unseen)| **unseen).map(|(p, _)| *p);
     let same = |p: Point2| cut().any(|q| (Point2::new(-p.x, p.y) - q).norm() < SAME * upright.size);
     let both = cut().filter(|p| same(*p)).count();
     if both as f64 > BOTH * unseen.len() as f64 {
-        if touches <= TOUCHES[1] {
-            return Ok(());
-        }
         return Err(StageError::invalid(format!("the frame cuts both halves of \"{panel}\" at the same place"))
             .hint("only what one half shows whole can be completed; photograph the garment with ground on all four sides"));
     }

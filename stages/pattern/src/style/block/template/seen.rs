@@ -104,7 +104,6 @@ impl SeenCorners {
             let between = |low: Point2, high: Point2, share: f64| low + (high - low) * share;
             let end = match (e.role, next) {
                 (_, None) => Point2::new(0.0, last),
-                (EdgeRole::Hem, Some(EdgeRole::Outseam)) => at(Landmark::LegRightOuter)?,
                 (EdgeRole::Hem, _) if form.begins_at_fork() => at(Landmark::LegRightOuter)?,
                 (EdgeRole::Hem, _) => at(Landmark::HemRight)?,
                 (EdgeRole::Inseam, _) => at(Landmark::LegRightInner)?,

@@ -157,18 +157,32 @@ fn a_back_that_is_the_fronts_mirror_image_is_cut_from_the_same_fit() {
     assert!(outlines.get("back").unwrap().frame.unwrap().mirrored);
 }
 
-/// A skirt whose waist is drawn in to less than half of its hip.
-const DRAWN_IN: &[[f64; 2]] = &[[0.0, 0.0], [300.0, 0.0], [290.0, 380.0], [130.0, 520.0], [0.0, 520.0]];
+/// Shorts whose waist is drawn in to less than half of their hip.
+const DRAWN_IN: &[[f64; 2]] =
+    &[[0.0, 200.0], [50.0, 0.0], [290.0, 0.0], [280.0, 300.0], [130.0, 450.0], [0.0, 450.0]];
 
 #[test]
 fn a_waist_that_an_elastic_draws_in_is_cut_as_wide_as_its_wearer_needs_it() {
     let waist = |girth: f64| {
         let body = Body { measurements: [("waist".to_owned(), girth)].into(), ..body() };
         let front = [("front".to_owned(), outline(garment(DRAWN_IN)))].into_iter().collect();
-        let (pattern, ..) = of(BlockStyle::Skirt).run(front, &body, None, &Context::quiet()).unwrap();
-        ["front", "back"].map(|piece| length(&pattern, piece, "waist")).iter().sum::<f64>()
+        let (pattern, ..) = of(BlockStyle::Trousers).run(front, &body, None, &Context::quiet()).unwrap();
+        let legs = ["left_leg_front", "right_leg_front", "right_leg_back", "left_leg_back"];
+        legs.map(|piece| length(&pattern, piece, "waist")).iter().sum::<f64>()
     };
     // It lies 520 mm around, and one of 540 mm wears it so; one of 700 mm does not.
     assert!((waist(0.54) - 520.0).abs() < 20.0, "{:.1}", waist(0.54));
     assert!((waist(0.7) - 721.0).abs() < 20.0, "{:.1}", waist(0.7));
+}
+
+#[test]
+fn a_skirt_that_flares_from_its_waist_is_not_drawn_in() {
+    let flared = [[0.0, 0.0], [420.0, 0.0], [130.0, 450.0], [0.0, 450.0]];
+    let waist = |girth: f64| {
+        let body = Body { measurements: [("waist".to_owned(), girth)].into(), ..body() };
+        let front = [("front".to_owned(), outline(garment(&flared)))].into_iter().collect();
+        of(BlockStyle::Skirt).run(front, &body, None, &Context::quiet()).map(|_| ())
+    };
+    let e = waist(0.7).unwrap_err().to_string();
+    assert!(e.contains("the garment is too small: its waist measures 52 cm around"), "{e}");
 }
