@@ -4,8 +4,8 @@
 //! way. The drawn-in waist is not the body's, and the cloth beneath it is not cut so
 //! narrow: it is as wide as the wearer's waist at least. How much wider the cloth is cut under the
 //! elastic a photo does not show. Limits: a waist that is too narrow because the scale is wrong, of
-//! a garment whose hip fits all the same, is taken for an elastic one. A skirt may flare from a waist
-//! of its own width, so that its hip tells nothing of it: skirts are left as they lie.
+//! a garment whose hip fits all the same, is taken for an elastic one. A skirt may flare from a
+//! waist of its own width, so that its hip tells nothing of it: skirts are left as they lie.
 
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;

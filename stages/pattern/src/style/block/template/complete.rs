@@ -38,7 +38,8 @@ const LEAST: f64 = 3.0;
 const SAME: f64 = 0.04;
 /// The share of the outline that may be cut on both sides at one height: a stray point is no cut.
 const BOTH: f64 = 0.02;
-/// What touches the frame over no more than this share of the photo's shorter side is not cut by it.
+/// What touches the frame over no more than this share of the photo's shorter side is not cut by
+/// it.
 const TOUCHES: f64 = 0.05;
 
 /// Marks the points where the frame cuts the garment. `size` is the photo's, pixels.
