@@ -11,6 +11,9 @@
 //!
 //! Cost: some 20 ms. Limits: the border is as true as the network; what a limb covers stays hidden.
 
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::Rotation2;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -27,8 +30,16 @@ const LEAST: f64 = 0.05;
 /// side at most, as a share of the garment's size.
 const GROUND: f64 = 0.5;
 const WIDEST: f64 = 0.25;
-/// Half of the wedge's width at the outline, as a share of the garment's size.
+/// From this probability on a place is surely ground, and the least patch of it, as a share of the
+/// garment's area.
+const SURE: f64 = 0.9;
+const LEAST_PATCH: f64 = 0.004;
+/// Half of the wedge's width at the outline, and how far it leads beyond it, as a share of the
+/// garment's size.
 const OPEN: f64 = 0.012;
+const BEYOND: f64 = 0.15;
+/// What is left must be more than this share of the outline's area.
+const MOST: f64 = 0.6;
 /// How likely a limb must be there and not folded away.
 const LIES: f64 = 0.5;
 /// The step by which ground beside the way is looked for, as a share of [`OPEN`].
@@ -104,20 +115,45 @@ pub(super) fn opened(outline: &Outline, seen: &SeenGarment) -> Option<OpenedOutl
         };
         let Some(way) = way(&points, from, border) else { continue };
         if polyline_length(&way) >= LEAST * size {
-            // Not past the line: beside the hem all is ground.
             let grid = Grid::over(&points);
             let within = grid.within(&points);
             let is_within = |p: Point2| grid.holding(p).is_some_and(|i| within[i]);
-            let is_ground = |p: Point2| is_within(p) && probability(Part::Ground, p) > GROUND;
-            points = wedge(&points, &way, OPEN * size, &|p, step| {
-                let reach = (WIDEST * size / step.norm().max(f64::MIN_POSITIVE)) as usize;
-                (1..=reach).take_while(|k| is_ground(p + step * *k as f64)).count() as f64
-            });
+            let is_bare = |p: Point2| !is_within(p) || probability(Part::Ground, p) > GROUND;
+            let wedge = Wedge { open: OPEN * size, widest: WIDEST * size, beyond: BEYOND * size };
+            let Some(opened) = parted(&points, &wedge.along(&way, &is_bare)) else { continue };
+            points = opened;
             what.push(words);
         }
     }
+    let bare = ground(&points, LEAST_PATCH * size * size, |p| probability(Part::Ground, p));
+    if let Some(opened) = (!bare.is_empty()).then(|| parted(&points, &bare)).flatten() {
+        points = opened;
+        what.push("the garment and the ground");
+    }
     let outer = Loop { points, corners: Vec::new() };
     (!what.is_empty()).then(|| OpenedOutline { outline: Outline { outer, ..outline.clone() }, what })
+}
+
+/// The cells within a closed line that are surely ground, of patches of that area at least; each is
+/// a quadrilateral, counter-clockwise.
+fn ground(points: &[Point2], least: f64, probability: impl Fn(Point2) -> f64) -> Vec<[Point2; 4]> {
+    let grid = Grid::over(points);
+    let within = grid.within(points);
+    let mut bare: Vec<bool> =
+        (0..within.len()).map(|i| within[i] && probability(grid.middle(i)) > SURE).collect();
+    let mut found = Vec::new();
+    for i in 0..bare.len() {
+        let mut patch = Vec::new();
+        let mut open = if std::mem::take(&mut bare[i]) { vec![i] } else { Vec::new() };
+        while let Some(k) = open.pop() {
+            patch.push(k);
+            open.extend(grid.around(k).filter(|(next, _)| std::mem::take(&mut bare[*next])).map(|n| n.0));
+        }
+        if patch.len() as f64 * grid.cell * grid.cell >= least {
+            found.extend(patch.into_iter().map(|k| grid.square(k)));
+        }
+    }
+    found
 }
 
 /// A grid of cells over an outline.
@@ -142,6 +178,13 @@ impl Grid {
     fn middle(&self, i: usize) -> Point2 {
         let at = Vector2::new((i % self.columns) as f64 + 0.5, (i / self.columns) as f64 + 0.5);
         self.low + at * self.cell
+    }
+
+    /// The corners of a cell, counter-clockwise.
+    fn square(&self, i: usize) -> [Point2; 4] {
+        let half = 0.5 * self.cell;
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, y)| self.middle(i) + Vector2::new(x, y) * half)
     }
 
     fn holding(&self, p: Point2) -> Option<usize> {
@@ -222,41 +265,63 @@ fn way(points: &[Point2], from: Point2, border: impl Fn(Point2) -> Option<f64>) 
     Some(cells.iter().enumerate().filter_map(kept).collect())
 }
 
-/// A closed line, counter-clockwise, led into itself along both sides of a way that ends at it; the
-/// sides are so far apart at its end as twice `open`, and meet at its start. `bare` counts the
-/// steps from a place of the way to a side over which the wedge widens.
-fn wedge(points: &[Point2], way: &[Point2], open: f64, bare: &dyn Fn(Point2, Vector2) -> f64) -> Vec<Point2> {
-    let Some(end) = way.last() else { return points.to_vec() };
-    let near = |i: usize| (points[i] - end).norm_squared();
-    let Some(at) = (0..points.len()).min_by(|a, b| near(*a).total_cmp(&near(*b))) else {
-        return points.to_vec();
-    };
-    let whole = polyline_length(way).max(f64::MIN_POSITIVE);
-    let mut along = 0.0;
-    let (mut before, mut after) = (Vec::new(), Vec::new());
-    for (k, p) in way.iter().enumerate() {
-        along += if k > 0 { (p - way[k - 1]).norm() } else { 0.0 };
-        let d = way[(k + 1).min(way.len() - 1)] - way[k.saturating_sub(1)];
-        let across = Rotation2::new(std::f64::consts::FRAC_PI_2) * d;
-        let across = across.try_normalize(1e-12).unwrap_or_default();
-        let to = |side: f64| {
-            let step = across * (side * STEP * open);
-            p + across * (side * open * along / whole) + step * bare(*p, step)
+/// What is cut out along a way.
+struct Wedge {
+    /// Half of its width at the end of the way; it is closed at the start.
+    open: f64,
+    /// How far it widens to each side at most.
+    widest: f64,
+    /// How far it leads beyond the end.
+    beyond: f64,
+}
+
+impl Wedge {
+    /// Its quadrilaterals, counter-clockwise. To each side it widens over all that is bare: ground,
+    /// and what lies outside.
+    fn along(&self, way: &[Point2], is_bare: &dyn Fn(Point2) -> bool) -> Vec<[Point2; 4]> {
+        let mut way = way.to_vec();
+        let along = polyline_length(&way).max(f64::MIN_POSITIVE);
+        if let [.., before, end] = way[..] {
+            let step = (end - before).try_normalize(1e-12).unwrap_or_default() * self.open;
+            let steps = (1..=(self.beyond / self.open) as usize).map(|k| end + step * k as f64);
+            way.extend(steps.take_while(|p| is_bare(*p)));
+        }
+        let mut gone = 0.0;
+        let mut across = |k: usize| {
+            let (p, last) = (way[k], way.len() - 1);
+            gone += if k > 0 { (p - way[k - 1]).norm() } else { 0.0 };
+            let d = way[(k + 1).min(last)] - way[k.saturating_sub(1)];
+            let left = Rotation2::new(std::f64::consts::FRAC_PI_2) * d;
+            let left = left.try_normalize(1e-12).unwrap_or_default();
+            let step = STEP * self.open;
+            let to = |side: f64| {
+                let start = self.open * (gone / along).min(1.0);
+                let place = |k: usize| p + left * (side * (start + step * k as f64));
+                let bare = (0..(self.widest / step) as usize).take_while(|k| is_bare(place(k + 1)));
+                place(bare.count())
+            };
+            [to(1.0), to(-1.0)]
         };
-        // Counter-clockwise around the line, the right of the way outwards comes first.
-        before.push(to(-1.0));
-        after.push(to(1.0));
+        let sides: Vec<[Point2; 2]> = (0..way.len()).map(&mut across).collect();
+        let quads = sides.windows(2).map(|w| [w[0][0], w[0][1], w[1][1], w[1][0]]);
+        quads.map(|q| if polygon_area(&q) < 0.0 { [q[3], q[2], q[1], q[0]] } else { q }).collect()
     }
-    // What of the line lies within the wedge's end goes.
-    let n = points.len();
-    let end_width = |side: &[Point2]| side.last().map_or(0.0, |p| (p - end).norm_squared());
-    let [wide_before, wide_after] = [end_width(&before), end_width(&after)];
-    let is_within = |i: usize, wide: f64| near(i) < wide;
-    let reach =
-        |step: usize, wide: f64| (1..n / 4).take_while(|k| is_within((at + k * step) % n, wide)).count();
-    let (next, last) = (reach(1, wide_after), reach(n - 1, wide_before));
-    let kept = (0..n - next - last - 1).map(|k| points[(at + next + 1 + k) % n]);
-    kept.chain(before.into_iter().rev()).chain(after.into_iter().skip(1)).collect()
+}
+
+/// A closed line without some quadrilaterals, counter-clockwise; none where they part it, or take
+/// most of it.
+fn parted(points: &[Point2], without: &[[Point2; 4]]) -> Option<Vec<Point2>> {
+    let line: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+    let without: Vec<Vec<[f64; 2]>> = without.iter().map(|q| q.map(|p| [p.x, p.y]).to_vec()).collect();
+    let left = line.overlay(&without, OverlayRule::Difference, FillRule::NonZero);
+    let outer = left.into_iter().filter_map(|shape| shape.into_iter().next());
+    let closed = outer.map(|line| line.into_iter().map(Point2::from).collect::<Vec<Point2>>());
+    let area = |line: &[Point2]| polygon_area(line).abs();
+    let mut largest = closed.max_by(|a, b| area(a).total_cmp(&area(b)))?;
+    if polygon_area(&largest) < 0.0 {
+        largest.reverse();
+    }
+    (area(&largest) > MOST * area(points)).then_some(largest)
 }
 
 #[cfg(test)]
@@ -300,10 +365,16 @@ mod tests {
         assert_eq!(way(&square(), Point2::new(90.0, 0.5), upright(0.5)), None);
     }
 
+    /// The square of 1 m without a wedge along a way that ends at its lower side.
+    fn opened(is_bare: &dyn Fn(Point2) -> bool) -> Vec<Point2> {
+        let way: Vec<Point2> = (0..=7).map(|k| Point2::new(0.5, 0.7 - 0.1 * f64::from(k))).collect();
+        let wedge = Wedge { open: 0.03, widest: 0.25, beyond: 0.15 };
+        parted(&square(), &wedge.along(&way, is_bare)).unwrap()
+    }
+
     #[test]
     fn a_wedge_takes_its_own_area_from_the_line_and_no_more() {
-        let way: Vec<Point2> = (0..=7).map(|k| Point2::new(0.5, 0.7 - 0.1 * f64::from(k))).collect();
-        let opened = wedge(&square(), &way, 0.03, &|_, _| 0.0);
+        let opened = opened(&|p| p.y < 0.0);
         // A triangle of 6 cm by 70 cm.
         assert!((polygon_area(&opened) - (1.0 - 0.5 * 0.06 * 0.7)).abs() < 2e-3, "{}", polygon_area(&opened));
         let grid = Grid::over(&opened);
@@ -313,12 +384,18 @@ mod tests {
     }
 
     #[test]
-    fn a_wedge_takes_in_the_ground_beside_it() {
-        let way: Vec<Point2> = (0..=7).map(|k| Point2::new(0.5, 0.7 - 0.1 * f64::from(k))).collect();
-        // Ground lies to the right of the way, up to 10 cm from it.
-        let bare = |_: Point2, step: Vector2| if step.x > 0.0 { 0.1 / step.norm() } else { 0.0 };
-        let opened = wedge(&square(), &way, 0.03, &bare);
-        let wedge = 0.5 * 0.06 * 0.7 + 0.1 * 0.7;
-        assert!((polygon_area(&opened) - (1.0 - wedge)).abs() < 8e-3, "{}", polygon_area(&opened));
+    fn a_wedge_takes_in_the_ground_beside_it_down_to_the_line() {
+        // Ground lies between 0.5 and 0.6, up to the fork.
+        let opened = opened(&|p| p.y < 0.0 || (p.x > 0.5 && p.x < 0.6 && p.y < 0.7));
+        let ground = 0.1 * 0.7 + 0.5 * 0.03 * 0.7;
+        assert!((polygon_area(&opened) - (1.0 - ground)).abs() < 1.5e-2, "{}", polygon_area(&opened));
+        let least = opened.iter().filter(|p| p.x > 0.52 && p.x < 0.58).map(|p| p.y).fold(1.0, f64::min);
+        assert!(least > 0.6, "the ground's lower edge is left at {least}");
+    }
+
+    #[test]
+    fn a_line_of_which_little_would_be_left_is_not_opened() {
+        let all = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.7], [0.0, 0.7]].map(|[x, y]| Point2::new(x, y));
+        assert_eq!(parted(&square(), &[all]), None);
     }
 }

@@ -8,8 +8,9 @@
 //! skirts, shorts and vests tell little, so that a short garment with few girths may fit several
 //! sizes; the body is a woman's or a child's.
 
-use super::elastic::{NARROWEST, is_drawn_in};
+use super::elastic::is_drawn_in;
 use super::likely::SeenPhoto;
+use super::wearable::{KEPT, NARROWEST};
 use super::{Block, BlockStyle, FRONT, Fitted, Front, Sides, Waist, refusal};
 use crate::style::block::template::complete::Complete;
 use crate::style::block::template::fit::Fit;
@@ -207,9 +208,6 @@ impl Fitting {
         all
     }
 }
-
-/// Under these names a body that was chosen for a garment keeps what that measures.
-pub(super) const KEPT: [&str; 3] = ["garment_chest", "garment_waist", "garment_hip"];
 
 /// A mannequin of that height and girths, metres. Arms that hang near a wide trunk touch it: then
 /// they are spread further than `arms`, degrees.

@@ -3,8 +3,8 @@
 //!
 //! [`apart`] opens the outline between limbs that touch, [`form`] says which edges a garment has,
 //! [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the
-//! whole outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`waist`]
-//! gathers a skirt to a band or lays it in pleats ([`pleat`]), [`front`] cuts a front in halves,
+//! whole outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`sleeve`]
+//! straightens long sleeves, [`waist`] gathers a skirt to a band or lays it in pleats ([`pleat`]), [`front`] cuts a front in halves,
 //! [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]);
 //! [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
@@ -19,6 +19,7 @@ mod pieces;
 mod pleat;
 mod refusal;
 mod seams;
+mod sleeve;
 mod stand;
 mod tell;
 pub(super) mod template;
@@ -42,7 +43,7 @@ use tell::at_95;
 pub use template::alike::Sides;
 pub use template::complete::Complete;
 use template::fit::{Fit, Halves, fits};
-use template::form::Form;
+use template::form::{Form, Mark};
 use template::halves::Upright;
 use template::marks::missing;
 pub(super) use template::piece_role::Layer;
@@ -194,9 +195,9 @@ impl Block {
             ));
         }
         let mut before = before;
-        if let Some([lies, cut]) = elastic::stretched(&mut before.fit, form, body) {
+        for (what, [lies, cut]) in elastic::all_stretched(&mut before.fit, form, body) {
             cx.note(format!(
-                "the waist measures {:.0} cm around as it lies, drawn in by its elastic: it is cut {:.0} cm wide, as its wearer needs it",
+                "{what} measures {:.0} cm around as it lies, drawn in by its elastic: it is cut {:.0} cm wide, as its wearer needs it",
                 lies * 100.0,
                 cut * 100.0
             ));
@@ -214,7 +215,7 @@ impl Block {
                     self.explains(BACK, &found, cx)?;
                 }
                 let (.., mut behind) = found;
-                elastic::stretched(&mut behind.fit, form, body);
+                elastic::all_stretched(&mut behind.fit, form, body);
                 behind
             }
         };
@@ -386,7 +387,10 @@ fn tried<'f>(
     likely: Option<&Likely>,
     corners: Option<&SeenCorners>,
 ) -> Result<(&'static str, &'f Form, Fit), StageError> {
-    let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(upright, form, halves, corners)).collect();
+    let tried: Vec<_> = forms
+        .par_iter()
+        .map(|(name, form)| sound(upright, form, halves, corners, likely.is_some_and(|l| l.is_sure_of(name))))
+        .collect();
     let (mut found, mut reasons) = (Vec::new(), Vec::new());
     for ((name, form), result) in forms.iter().zip(tried) {
         match result {
@@ -402,17 +406,20 @@ fn tried<'f>(
     best.ok_or_else(|| refusal::none(panel, &reasons))
 }
 
-/// The better fit of those that the form allows, or why there is none.
+/// The better fit of those that the form allows, or why there is none. Legs of a form that the
+/// network `is_sure` of may be as short as they like.
 fn sound(
     upright: &Upright,
     form: &Form,
     halves: Halves,
     corners: Option<&SeenCorners>,
+    is_sure: bool,
 ) -> Result<Fit, &'static str> {
     let mut reason = "its edges are not in their usual places";
     let mut allowed = Vec::new();
     for fit in fits(upright, form, halves, corners) {
-        match form.marks.iter().find_map(|m| missing(&fit, m)) {
+        let counts = |m: &&Mark| !(is_sure && matches!(m, Mark::Below(0, ..)));
+        match form.marks.iter().filter(counts).find_map(|m| missing(&fit, m)) {
             Some(lacks) => reason = lacks,
             None => allowed.push(fit),
         }

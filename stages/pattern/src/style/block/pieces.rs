@@ -9,6 +9,7 @@
 //! raglan sleeve is cut as a set-in one.
 
 use super::front::{self, Front};
+use super::sleeve::SleeveShape;
 use super::waist::{self, Waist};
 use crate::style::block::template::curve::Curve;
 use crate::style::block::template::fit::Fit;
@@ -21,8 +22,6 @@ use toile_core::prelude::*;
 const SHOULDER: f64 = 0.88;
 /// And within these shares of the way from cuff to neck.
 const ALONG: [f64; 2] = [0.2, 0.75];
-/// A sleeve lies folded at the armpit where it is so many times as wide below it.
-const FOLDED: f64 = 1.08;
 /// The template's own corner is the shoulder point where it lies so near to that distance, as a
 /// share of it.
 const CORNER: f64 = 0.1;
@@ -59,7 +58,7 @@ pub(super) fn layer(fit: &Fit, form: &Form, making: Making, layer: Layer, is_cut
     if form.has_legs() {
         return sides.iter().map(|s| leg(s, layer)).collect();
     }
-    let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form)).collect();
+    let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form, is_cut)).collect();
     let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
     let trunk = match (layer, making.front) {
         (Layer::Front, Front::Halves) => {
@@ -98,7 +97,7 @@ struct Cutting {
 }
 
 impl Cutting {
-    fn of(side: &Side, form: &Form) -> Self {
+    fn of(side: &Side, form: &Form, is_cut: bool) -> Self {
         let last = form.edges.len() - 1;
         // A hem from side to side belongs to both halves.
         let first = usize::from(!form.begins_at_fork());
@@ -106,36 +105,26 @@ impl Cutting {
         let Some(k) = form.underarm() else {
             return Cutting { trunk: (first..last).map(run).collect(), sleeve: None };
         };
-        let armpit = side.edges[k].1.0[0];
+        let [underarm, cuff] = [k, k + 1].map(|k| side.edges[k].1);
+        let armpit = underarm.0[0];
         let upper: Vec<Curve> = side.edges[k + 2..last].iter().map(|e| e.1).collect();
-        let [above, shoulder] = parted(&upper, armpit.x);
-        let shoulder_point = shoulder[0].0[0];
-        let armhole = arched(armpit, shoulder_point);
+        let [top, shoulder] = parted(&upper, armpit.x);
+        let armhole = arched(armpit, shoulder[0].0[0]);
         let mut trunk: Vec<_> = (first..k).map(run).collect();
         trunk.extend([(EdgeRole::Armhole, Run::Cubic(armhole)), (EdgeRole::Shoulder, Run::of(shoulder))]);
-        let (underarm, cap) = match opened(&side.edges[k].1, &above) {
-            Some(underarm) => (underarm, arched(underarm.0[0], shoulder_point).turned()),
-            None => (side.edges[k].1, armhole.turned()),
-        };
-        let (underarm, cap) = ((EdgeRole::Underarm, Run::Cubic(underarm)), (EdgeRole::Cap, Run::Cubic(cap)));
-        Cutting { trunk, sleeve: Some(vec![underarm, run(k + 1), (EdgeRole::Top, Run::of(above)), cap]) }
+        let shape = SleeveShape { underarm, cuff, top };
+        let shape = if is_cut { shape.straightened() } else { Some(shape) };
+        let sleeve = shape.and_then(|shape| {
+            let [armpit, point] = shape.ends()?;
+            Some(vec![
+                (EdgeRole::Underarm, Run::Cubic(shape.underarm)),
+                (EdgeRole::Cuff, Run::Cubic(shape.cuff)),
+                (EdgeRole::Top, Run::of(shape.top)),
+                (EdgeRole::Cap, Run::Cubic(arched(armpit, point).turned())),
+            ])
+        });
+        Cutting { trunk, sleeve }
     }
-}
-
-/// The underarm of a sleeve that hangs beside the body, opened at the armpit, where the sleeve lies
-/// folded: it is as wide there as it is widest below. Nothing where it is so as it lies.
-fn opened(underarm: &Curve, top: &[Curve]) -> Option<Curve> {
-    let above: Vec<Point2> = top.iter().flat_map(|c| c.points(PARTS)).collect();
-    let nearest = |p: Point2| above.iter().copied().min_by(|a, b| (a - p).norm().total_cmp(&(b - p).norm()));
-    let wide = |p: Point2| nearest(p).map_or(0.0, |q| (p - q).norm());
-    let widest = underarm.points(PARTS).into_iter().map(wide).fold(0.0, f64::max);
-    let [armpit, .., control, cuff] = underarm.0;
-    let away = (armpit - nearest(armpit)?).try_normalize(1e-9)?;
-    if widest < FOLDED * wide(armpit) {
-        return None;
-    }
-    let opened = armpit + away * (widest - wide(armpit));
-    Some(Curve([opened, opened + (cuff - opened) / 3.0, control, cuff]))
 }
 
 /// The upper border from cuff to neck, parted at the shoulder point; `armpit` is the armpit's

@@ -3,8 +3,6 @@
 //! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at
 //! its armpits, its waist and hip, and its cuffs; what a closure would open is not known.
 
-use super::elastic::NARROWEST;
-use super::fitting::KEPT;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
 use toile_body::convex_hull;
@@ -17,12 +15,17 @@ const REACH: f64 = 0.08;
 /// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
 const UPPERMOST: f64 = 0.5;
 
+/// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
+pub(super) const NARROWEST: f64 = 0.8;
+/// Under these names a body that was chosen for a garment keeps what that measures.
+pub(super) const KEPT: [&str; 3] = ["garment_chest", "garment_waist", "garment_hip"];
+
 /// A girth of the garment beside that of the body, metres.
-struct Girth {
+pub(super) struct Girth {
     what: &'static str,
-    garment: f64,
+    pub garment: f64,
     of_body: &'static str,
-    body: f64,
+    pub body: f64,
 }
 
 /// Girths of one garment that differ by more than this share were not measured alike.
@@ -83,12 +86,12 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
         tape("waist", "the body's", "waist", form.at(EdgeRole::Waist).map(across)),
         tape("hip", "the body's", "hip", fit.hip(form)),
     ];
-    found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
+    found.into_iter().flatten().chain(narrower_cuff(form, fit, body)).collect()
 }
 
 /// The narrower cuff beside the arm where it ends: as far below the armpit as the underarm seam is
 /// long.
-fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
+pub(super) fn narrower_cuff(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
     let cuff = form.underarm()? + 1;
     let mark = |name: &str| body.landmark(name, Hand::Left);
     let (shoulder, elbow, wrist) = (mark("shoulder")?, mark("elbow")?, mark("wrist")?);
