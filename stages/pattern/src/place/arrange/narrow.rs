@@ -14,6 +14,8 @@ use toile_core::prelude::*;
 
 /// A sleeve slides along the arm by so much, metres.
 const SLIDES: f64 = 0.04;
+/// No arm is thicker, metres around.
+const THICKEST: f64 = 0.7;
 /// Steps along the arm, metres.
 const STEP: f64 = 0.01;
 
@@ -52,7 +54,7 @@ impl Narrow {
 
 /// The girths of an arm along it.
 pub(super) struct ArmGirths {
-    /// Every [`STEP`] from the root on; none where no loop goes around the axis.
+    /// Every [`STEP`] from the root on; none where no loop goes around the arm alone.
     girths: Vec<Option<f64>>,
 }
 
@@ -69,7 +71,8 @@ impl ArmGirths {
         let girth = |k: usize| {
             let loops = slice(&skin, &body.triangles, k as f64 * STEP);
             let around = loops.iter().filter(|l| l.holds(Point2::origin()));
-            around.map(|l| l.girth).min_by(f64::total_cmp)
+            // At its root the arm goes over into the trunk.
+            around.map(|l| l.girth).filter(|girth| *girth < THICKEST).min_by(f64::total_cmp)
         };
         ArmGirths { girths: (0..=steps).map(girth).collect() }
     }

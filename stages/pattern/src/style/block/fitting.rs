@@ -52,10 +52,11 @@ pub(super) const SIZES: [[f64; 4]; 26] = [
 ];
 
 /// Usual share of a girth of the body by which a garment is wider there, and its spread: at chest,
-/// waist and hip. Skirts and trousers may be as wide at the hip as they like: there only what is
-/// narrower counts.
+/// waist and hip. Skirts may be as wide at the hip as they like: there only what is narrower
+/// counts. Legs may be wide there, but a wearer whom they fit is likelier: that is their spread.
 const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.03, 0.06]];
 const HIP: usize = 2;
+const WIDE_HIP: f64 = 0.12;
 /// Hips of people of one size differ by this share: trousers are worn by one whose hips are so much
 /// wider where they are cut for them.
 const HIPS: f64 = 0.05;
@@ -149,14 +150,16 @@ impl Fitting {
             Complete::Nothing => Complete::Mirror,
             Complete::Mirror => Complete::Nothing,
         };
-        // What is measured is what is cut. Whether the garment is what it is taken for is the
+        // What is measured is what is cut. Whether the garment is what it is said to be is the
         // style's affair: what it would refuse is measured all the same.
-        let as_cut = Block::default().stray;
-        let (_, form, Fitted { fit, .. }) = fitted(as_cut, self.complete)
-            .or_else(|_| fitted(as_cut, other))
-            .or_else(|_| fitted(f64::INFINITY, Complete::Mirror))
-            .or_else(|_| fitted(f64::INFINITY, Complete::Nothing))
-            .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
+        let as_cut = fitted(Block::default().stray, self.complete);
+        let (_, form, Fitted { fit, .. }) = match self.style {
+            BlockStyle::Auto => as_cut.map_err(say)?,
+            _ => as_cut
+                .or_else(|_| fitted(Block::default().stray, other))
+                .or_else(|_| fitted(f64::INFINITY, Complete::Mirror))
+                .or_else(|_| fitted(f64::INFINITY, Complete::Nothing))?,
+        };
         let tape = Tape::of(form, &fit);
         tape.tell(cx);
         tape.worn_by_someone(form.word)?;
@@ -246,6 +249,8 @@ struct Tape {
     length: Option<(f64, [f64; 2])>,
     /// From the neck to the wrist.
     sleeve: Option<f64>,
+    /// Whether it has two legs.
+    has_legs: bool,
 }
 
 impl Tape {
@@ -280,15 +285,19 @@ impl Tape {
             s[k].length() + s[k + 1].length() + s[k + 1].b.x
         };
         let sleeve = at(EdgeRole::Top).filter(|_| is_long).map(|k| mean(&|s| along(s, k)));
-        Tape { girths: [chest, waist, hip], length, sleeve }
+        Tape { girths: [chest, waist, hip], length, sleeve, has_legs: form.has_legs() }
     }
 
     /// How far a size is from wearing it as usual: the mean square of what is measured, in spreads.
     fn cost(&self, [height, bust, waist, hip]: &[f64; 4]) -> f64 {
         let body = [bust, waist, hip];
         let girth = |k: usize| {
-            let off = (self.girths[k]? * 100.0 / body[k] - 1.0 - EASE[k][0]) / EASE[k][1];
-            Some(if k == HIP { off.min(0.0) } else { off })
+            let off = self.girths[k]? * 100.0 / body[k] - 1.0 - EASE[k][0];
+            Some(match (k == HIP && off > 0.0, self.has_legs) {
+                (false, _) => off / EASE[k][1],
+                (true, true) => off / WIDE_HIP,
+                (true, false) => 0.0,
+            })
         };
         let long = self.length.map(|(l, [usual, spread])| (l * 100.0 / height - usual) / spread);
         let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);

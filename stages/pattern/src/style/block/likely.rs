@@ -13,6 +13,8 @@ use toile_recognise::{GarmentKind, SeenGarment};
 const WEIGHT: f64 = 0.4;
 /// No style is less probable than this: the network was trained on few garments of some kinds.
 const LEAST: f64 = 0.002;
+/// So many of the likeliest kinds are tried before the others.
+const FIRST: usize = 3;
 /// From this probability of a style on, the network says what the garment is.
 const SURE: f64 = 0.6;
 /// A style that is less probable cuts another garment than the network sees, where that one is
@@ -52,6 +54,12 @@ impl Likely {
         self.0.iter().filter(|(kind, _)| cuts(kind)).map(|(_, p)| p).sum()
     }
 
+    /// Whether it cuts garments of one of the likeliest kinds.
+    pub(super) fn is_likely(&self, name: &str) -> bool {
+        let first = self.0.iter().take(FIRST).filter(|(_, p)| *p >= LEAST);
+        first.flat_map(|(kind, _)| styles(*kind)).any(|s| s.name() == name)
+    }
+
     /// What its improbability adds to the score of a fit.
     pub(super) fn price(&self, name: &str) -> f64 {
         -WEIGHT * self.style(name).max(LEAST).ln()
@@ -75,7 +83,7 @@ fn styles(kind: GarmentKind) -> &'static [BlockStyle] {
     use BlockStyle as S;
     match kind {
         GarmentKind::Tshirt => &[S::TShirt, S::GrownSleeve],
-        GarmentKind::Polo => &[S::TShirt],
+        GarmentKind::Polo => &[S::TShirt, S::GrownSleeve],
         GarmentKind::Longsleeve | GarmentKind::Hoodie => &[S::LongSleeve],
         GarmentKind::Shirt => &[S::LongSleeve, S::TShirt],
         GarmentKind::Jacket => &[S::LongSleeve, S::Vest],

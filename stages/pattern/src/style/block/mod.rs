@@ -60,6 +60,10 @@ const BACK: &str = Layer::Back.word();
 /// lie against it looks a little like a skirt.
 const UNSAID: f64 = 0.5;
 
+/// What corners that lie elsewhere than the network sees them add to the score of a fit, for each
+/// squared spread.
+const LANDMARKS: f64 = 0.3;
+
 /// And for a template that is judged by one half: there is less to tell it by.
 const HALF: f64 = 0.7;
 
@@ -225,6 +229,17 @@ impl Block {
     }
 }
 
+/// What is looked for in an outline.
+struct Sought<'a> {
+    forms: Vec<(&'static str, &'static Form)>,
+    /// How likely each is, where that is known.
+    likely: Option<&'a Likely>,
+    /// Whether somebody has said what it is.
+    is_said: bool,
+    /// Whether the outline was opened between limbs and what they touch.
+    is_opened: bool,
+}
+
 impl Block {
     /// What lays a template over an outline that is cut as it lies.
     pub(super) fn as_it_lies(style: BlockStyle) -> Self {
@@ -257,7 +272,8 @@ impl Block {
     }
 
     /// The best of the forms, fitted to the outline as it is, or opened where the network sees that
-    /// a limb lies against the rest.
+    /// a limb lies against the rest. The likeliest are tried first, and the others only where none
+    /// of those fits.
     pub(super) fn best(
         &self,
         panel: &str,
@@ -268,12 +284,44 @@ impl Block {
     ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
         let seen = photo.and_then(|photo| photo.seen.as_ref());
         let likely = seen.filter(|_| forms.len() > 1).map(Likely::of);
-        let whole = self.laid(panel, outline, photo, &forms, likely.as_ref(), cx);
+        let is_said = forms.len() == 1;
+        let likeliest: Vec<_> = forms
+            .iter()
+            .copied()
+            .filter(|(name, _)| likely.as_ref().is_none_or(|l| l.is_likely(name)))
+            .collect();
+        let of = |forms| {
+            self.best_of(
+                panel,
+                outline,
+                photo,
+                &Sought { forms, likely: likely.as_ref(), is_said, is_opened: false },
+                cx,
+            )
+        };
+        match likeliest.len() < forms.len() {
+            true => of(likeliest).or_else(|_| of(forms)),
+            false => of(forms),
+        }
+    }
+
+    /// The best of the forms that are sought.
+    fn best_of(
+        &self,
+        panel: &str,
+        outline: &Outline,
+        photo: Option<&SeenPhoto<'_>>,
+        sought: &Sought<'_>,
+        cx: &Context,
+    ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
+        let whole = self.laid(panel, outline, photo, sought, cx);
+        let seen = photo.and_then(|photo| photo.seen.as_ref());
         let Some(opened) = seen.and_then(|seen| apart::opened(outline, seen)) else { return whole };
-        let apart = self.laid(panel, &opened.outline, photo, &forms, likely.as_ref(), cx);
+        let apart = Sought { is_opened: true, forms: sought.forms.clone(), ..*sought };
+        let apart = self.laid(panel, &opened.outline, photo, &apart, cx);
         let apart = apart.map(|(name, form, fitted)| (name, form, Fitted { apart: opened.what, ..fitted }));
         let price = |(name, _, fitted): &(&str, &Form, Fitted)| {
-            fitted.lying.score + likely.as_ref().map_or(0.0, |l| l.price(name))
+            fitted.lying.score + sought.likely.map_or(0.0, |l| l.price(name))
         };
         match (whole, apart) {
             (Ok(whole), Ok(apart)) => Ok(if price(&apart) < price(&whole) { apart } else { whole }),
@@ -287,35 +335,33 @@ impl Block {
         panel: &str,
         outline: &Outline,
         photo: Option<&SeenPhoto<'_>>,
-        forms: &[(&'static str, &'static Form)],
-        likely: Option<&Likely>,
+        Sought { forms, likely, is_said, is_opened }: &Sought<'_>,
         cx: &Context,
     ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
-        let auto = forms.len() > 1;
         let mut upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
         if let Some(photo) = photo.filter(|_| self.complete == Complete::Mirror) {
             template::complete::mark(&mut upright, outline, photo.photo.pixels.dimensions(), panel)?;
         }
         let seen = photo.and_then(|photo| photo.seen.as_ref()).zip(outline.frame.as_ref());
-        let corners = seen.map(|(seen, frame)| SeenCorners::of(seen, &upright, frame));
+        let corners =
+            |upright: &Upright| seen.map(|(seen, frame)| SeenCorners::of(seen, upright, frame, *is_opened));
         cx.check()?;
-        let said = |name: &str| !auto || likely.is_some_and(|l| l.is_sure_of(name));
+        let said = |name: &str| *is_said || likely.is_some_and(|l| l.is_sure_of(name));
         let size = upright.size;
         let limit = |name: &str| self.stray * size * if said(name) { 1.0 } else { UNSAID };
-        let found =
-            tried(&upright, panel, forms, Halves::Both, likely, corners.as_ref()).and_then(
-                |best| match strays(&best.2) > limit(best.0) {
-                    true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), auto)),
-                    false => Ok(best),
-                },
-            );
+        let found = tried(&upright, panel, forms, Halves::Both, *likely, corners(&upright).as_ref())
+            .and_then(|best| match strays(&best.2) > limit(best.0) {
+                true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), !is_said)),
+                false => Ok(best),
+            });
         let doubtful = match &found {
             Ok((_, form, fit)) => template::alike::differ(fit, form, upright.size),
             Err(_) => true,
         };
         let one = || {
             let upright = upright.about_its_rows()?;
-            let best = tried(&upright, panel, forms, Halves::Better, likely, None).ok()?;
+            let best =
+                tried(&upright, panel, forms, Halves::Better, *likely, corners(&upright).as_ref()).ok()?;
             let (other, limit) = (1 - best.2.judged?, limit(best.0));
             let is_sound = strays(&best.2) <= limit * HALF && best.2.near(&upright, other, limit) >= OTHER;
             is_sound.then_some((best, upright))
@@ -418,6 +464,11 @@ fn sound(
     let mut reason = "its edges are not in their usual places";
     let mut allowed = Vec::new();
     for fit in fits(upright, form, halves, corners) {
+        let corner = |side: usize, k: usize| {
+            fit.judged.is_none_or(|judged| judged == side).then(|| fit.corner(side, k))
+        };
+        let astray = corners.map_or(0.0, |c| c.astray(form, upright.size, corner));
+        let fit = Fit { score: fit.score + LANDMARKS * astray, ..fit };
         let counts = |m: &&Mark| !(is_sure && matches!(m, Mark::Below(0, ..)));
         match form.marks.iter().filter(counts).find_map(|m| missing(&fit, m)) {
             Some(lacks) => reason = lacks,

@@ -20,8 +20,11 @@ use toile_core::prelude::*;
 
 /// The shoulder point's distance from the axis, as a share of the armpit's.
 const SHOULDER: f64 = 0.88;
+/// And at least so far from the armpit, as a share of that one's distance from the axis: an armhole
+/// is about 0.9 times as deep (Aldrich 2008).
+const LEAST_ARMHOLE: f64 = 0.7;
 /// And within these shares of the way from cuff to neck.
-const ALONG: [f64; 2] = [0.2, 0.75];
+const ALONG: [f64; 2] = [0.2, 0.88];
 /// The template's own corner is the shoulder point where it lies so near to that distance, as a
 /// share of it.
 const CORNER: f64 = 0.1;
@@ -108,7 +111,7 @@ impl Cutting {
         let [underarm, cuff] = [k, k + 1].map(|k| side.edges[k].1);
         let armpit = underarm.0[0];
         let upper: Vec<Curve> = side.edges[k + 2..last].iter().map(|e| e.1).collect();
-        let [top, shoulder] = parted(&upper, armpit.x);
+        let [top, shoulder] = parted(&upper, armpit);
         let armhole = arched(armpit, shoulder[0].0[0]);
         let mut trunk: Vec<_> = (first..k).map(run).collect();
         trunk.extend([(EdgeRole::Armhole, Run::Cubic(armhole)), (EdgeRole::Shoulder, Run::of(shoulder))]);
@@ -127,17 +130,18 @@ impl Cutting {
     }
 }
 
-/// The upper border from cuff to neck, parted at the shoulder point; `armpit` is the armpit's
-/// distance from the axis.
-fn parted(upper: &[Curve], armpit: f64) -> [Vec<Curve>; 2] {
+/// The upper border from cuff to neck, parted at the shoulder point.
+fn parted(upper: &[Curve], armpit: Point2) -> [Vec<Curve>; 2] {
     let at = |s: f64| {
         let k = (s as usize).min(upper.len() - 1);
         upper[k].at(s - k as f64)
     };
-    let out = SHOULDER * armpit;
+    let out = SHOULDER * armpit.x;
+    // Of a sleeve that hangs beside the body the border runs near the armpit.
+    let is_far = |p: Point2| (p - armpit).norm() >= LEAST_ARMHOLE * armpit.x;
     // The template's own corner, where it lies near enough.
-    let corner = (1..upper.len()).find(|k| (at(*k as f64).x / out - 1.0).abs() < CORNER);
-    if let Some(k) = corner {
+    let is_corner = |p: Point2| (p.x / out - 1.0).abs() < CORNER && is_far(p);
+    if let Some(k) = (1..upper.len()).find(|k| is_corner(at(*k as f64))) {
         return [upper[..k].to_vec(), upper[k..].to_vec()];
     }
     let steps = 200 * upper.len();
@@ -147,7 +151,8 @@ fn parted(upper: &[Curve], armpit: f64) -> [Vec<Curve>; 2] {
         way.push(way[way.len() - 1] + (at(w[1]) - at(w[0])).norm());
     }
     let place = |share: f64| way.partition_point(|l| *l < share * way[steps]).min(steps);
-    let beyond = along.iter().position(|s| at(*s).x <= out).unwrap_or(steps);
+    let is_beyond = |p: Point2| p.x <= out && is_far(p);
+    let beyond = along.iter().position(|s| is_beyond(at(*s))).unwrap_or(steps);
     let s = along[beyond.clamp(place(ALONG[0]), place(ALONG[1]))];
     let k = (s as usize).min(upper.len() - 1);
     let [before, behind] = upper[k].parted(s - k as f64);

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::*;
-use crate::style::block::template::bow::Bow;
+use crate::style::block::template::bow::{Bow, SampledBow};
 use crate::style::block::template::curve::Curve;
 use nalgebra::Rotation2;
 use proptest::prelude::*;
@@ -346,9 +346,13 @@ proptest! {
     #[test]
     fn the_nearest_place_of_a_bow_is_nearest(bow in bow(), x in -2.0..2.0_f64, y in -2.0..2.0_f64) {
         let p = Point2::new(x, y);
-        let found = (bow.at(bow.nearest(p)) - p).norm();
+        let sampled = SampledBow::from(bow);
+        let found = sampled.nearest(p, f64::INFINITY).unwrap_or_default().1.norm();
         let least = (0..=400).map(|k| (bow.at(f64::from(k) / 400.0) - p).norm()).fold(f64::INFINITY, f64::min);
         prop_assert!(found <= least + 2e-2 * (bow.b - bow.a).norm(), "{found} {least}");
+        // What lies within reach is found.
+        let again = sampled.nearest(p, found).unwrap_or_default();
+        prop_assert_eq!(again.1.norm(), found);
     }
 }
 

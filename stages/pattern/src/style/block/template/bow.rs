@@ -66,13 +66,10 @@ impl Bow {
         self.points().windows(2).map(|w| (w[1] - w[0]).norm()).sum()
     }
 
-    /// The parameter of the point nearest to a place.
-    pub(crate) fn nearest(&self, p: Point2) -> f64 {
-        let step = 1.0 / PARTS as f64;
-        let points = self.points();
-        let far = |k: &usize| (points[*k] - p).norm_squared();
-        let k = (0..=PARTS).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
-        let mut t = k as f64 * step;
+    /// The parameter of the point nearest to a place, of which the sampled point of that number is
+    /// the nearest of its kind.
+    fn nearest(&self, p: Point2, sampled: usize) -> f64 {
+        let mut t = sampled as f64 / PARTS as f64;
         for _ in 0..STEPS {
             let d = self.direction(t);
             let mut by = (p - self.at(t)).dot(&d) / d.norm_squared().max(f64::MIN_POSITIVE);
@@ -84,5 +81,35 @@ impl Bow {
             t = (t + by).clamp(0.0, 1.0);
         }
         t
+    }
+}
+
+/// A bow with its points, so that many places can be compared to it.
+pub(crate) struct SampledBow {
+    bow: Bow,
+    points: Vec<Point2>,
+    /// No point of the curve lies farther from the nearest sampled one.
+    gap: f64,
+}
+
+impl From<Bow> for SampledBow {
+    fn from(bow: Bow) -> Self {
+        let points = bow.points();
+        let gap = points.windows(2).map(|w| (w[1] - w[0]).norm()).fold(0.0, f64::max);
+        SampledBow { bow, points, gap }
+    }
+}
+
+impl SampledBow {
+    /// The parameter of the point nearest to a place, and the way from it to the place; none where
+    /// all lie farther than `reach`.
+    pub(crate) fn nearest(&self, p: Point2, reach: f64) -> Option<(f64, Vector2)> {
+        let far = |k: &usize| (self.points[*k] - p).norm_squared();
+        let k = (0..=PARTS).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
+        if far(&k).sqrt() - self.gap > reach {
+            return None;
+        }
+        let t = self.bow.nearest(p, k);
+        Some((t, p - self.bow.at(t)))
     }
 }

@@ -10,10 +10,10 @@
 //! or a rag moves no edge. Cost: some milliseconds a form. Limits: a fold along the whole of a side
 //! is taken for the side.
 
-use crate::style::block::template::bow::Bow;
+use crate::style::block::template::bow::{Bow, SampledBow};
 use crate::style::block::template::form::{EdgeForm, Form};
 use crate::style::block::template::halves::Upright;
-use crate::style::block::template::seen::SeenCorners;
+use crate::style::block::template::seen::{CornerPull, SeenCorners};
 use crate::style::block::template::segment::{self, Cut, belief, cut};
 use nalgebra::{DMatrix, DVector, Rotation2};
 use toile_core::artifact::{EdgeRole, Point2, Vector2};
@@ -31,6 +31,8 @@ const ALIKE: [f64; 2] = [0.02, 0.05];
 /// Places on each edge that are drawn to the outline, and their weight.
 const PLACES: usize = 8;
 const PULL: f64 = 0.5;
+/// Spread of corners about those that are seen, as a share of the size.
+const SEEN: f64 = 0.04;
 /// Squared spreads that a point adds to the score at most.
 const MOST: f64 = 16.0;
 /// What the sum of squares of the cut adds to the score, for each of its points; and what every
@@ -85,6 +87,13 @@ impl Fit {
         Rotation2::new(self.turn) * Point2::new(u, p.y)
     }
 
+    /// Where an edge of a side ends, in the frame of the upright outline, the second side seen in a
+    /// mirror.
+    pub(crate) fn corner(&self, side: usize, edge: usize) -> Point2 {
+        let p = self.laid(self.sides[side][edge].b, side);
+        Point2::new(if side == 0 { p.x } else { -p.x }, p.y)
+    }
+
     /// The same template over the outline's mirror image.
     pub(crate) fn mirrored(&self) -> Fit {
         let [right, left] = self.sides.clone();
@@ -119,8 +128,9 @@ impl Fit {
     pub(crate) fn astray(&self, upright: &Upright, form: &Form) -> [f64; 2] {
         let m = TemplateModel { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
         let mut sums = [(0.0, 0.0); 2];
+        let sampled = m.sampled();
         for p in &upright.points {
-            let (side, edge, _, off) = nearest(&m, *p);
+            let (side, edge, _, off) = nearest(&m, &sampled, *p);
             if own(form.edges, edge) {
                 sums[side].0 += off.norm();
                 sums[side].1 += 1.0;
@@ -134,8 +144,9 @@ impl Fit {
     pub(crate) fn near(&self, upright: &Upright, side: usize, reach: f64) -> f64 {
         let m = TemplateModel { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
         let (mut near, mut all) = (0.0, 0.0);
-        for off in upright.points.iter().map(|p| nearest(&m, *p)).filter(|n| n.0 == side).map(|n| n.3.norm())
-        {
+        let sampled = m.sampled();
+        let nearest = upright.points.iter().map(|p| nearest(&m, &sampled, *p));
+        for off in nearest.filter(|n| n.0 == side).map(|n| n.3.norm()) {
             all += 1.0;
             near += if off < reach { 1.0 } else { 0.0 };
         }
@@ -163,16 +174,17 @@ pub(crate) fn fits(
     halves: Halves,
     corners: Option<&SeenCorners>,
 ) -> Vec<Fit> {
+    let pulls = corners.map_or_else(Vec::new, |corners| corners.pulls(form));
     let corners = corners.filter(|_| halves == Halves::Both);
-    let by_landmarks = corners.and_then(|corners| by_landmarks(upright, form, corners));
-    by_outline(upright, form, halves).into_iter().chain(by_landmarks).collect()
+    let by_landmarks = corners.and_then(|corners| by_landmarks(upright, form, corners, &pulls));
+    by_outline(upright, form, halves, &pulls).into_iter().chain(by_landmarks).collect()
 }
 
 /// The fit from the landmarks that are seen.
-fn by_landmarks(upright: &Upright, form: &Form, corners: &SeenCorners) -> Option<Fit> {
+fn by_landmarks(upright: &Upright, form: &Form, corners: &SeenCorners, pulls: &[CornerPull]) -> Option<Fit> {
     let shift = corners.shift(form)?;
     let [one, other] = corners.edges(form, shift)?.map(|edges| Cut { edges, cost: 0.0 });
-    let mut problem = Problem::new(upright, form, [&one, &other], None);
+    let mut problem = Problem::new(upright, form, [&one, &other], None, pulls);
     problem.at[SHIFT] = shift;
     let fit = problem.solve();
     let unusual = |(bow, e): (&Bow, &EdgeForm)| {
@@ -186,19 +198,19 @@ fn by_landmarks(upright: &Upright, form: &Form, corners: &SeenCorners) -> Option
 }
 
 /// The best fit of a form from the cuts of both halves of the outline.
-fn by_outline(upright: &Upright, form: &Form, halves: Halves) -> Option<Fit> {
+fn by_outline(upright: &Upright, form: &Form, halves: Halves, pulls: &[CornerPull]) -> Option<Fit> {
     let cuts = [0, 1].map(|k| cut(&upright.halves[k], form, upright.size));
     let points = upright.halves[0].len() as f64;
     if halves == Halves::Better {
-        return better(upright, form, &cuts, points);
+        return better(upright, form, &cuts, pulls);
     }
     let [Some(a), Some(b)] = cuts else { return None };
     let unusual = (a.cost + b.cost) / (2.0 * points);
-    let mut best = Problem::new(upright, form, [&a, &b], None).solve();
+    let mut best = Problem::new(upright, form, [&a, &b], None, pulls).solve();
     // Halves that differ: what only one of them shows is looked for from that one alone.
     if best.score > WELL || upright.unseen.contains(&true) {
         for alone in [&a, &b] {
-            let other = Problem::new(upright, form, [alone, alone], None).solve();
+            let other = Problem::new(upright, form, [alone, alone], None, pulls).solve();
             best = if other.score < best.score { other } else { best };
         }
     }
@@ -206,10 +218,11 @@ fn by_outline(upright: &Upright, form: &Form, halves: Halves) -> Option<Fit> {
 }
 
 /// The best fit that is judged by one half, from the cut of that half.
-fn better(upright: &Upright, form: &Form, cuts: &[Option<Cut>; 2], points: f64) -> Option<Fit> {
+fn better(upright: &Upright, form: &Form, cuts: &[Option<Cut>; 2], pulls: &[CornerPull]) -> Option<Fit> {
+    let points = upright.halves[0].len() as f64;
     let solve = |(side, cut): (usize, &Option<Cut>)| {
         let cut = cut.as_ref()?;
-        let mut fit = Problem::new(upright, form, [cut, cut], Some(side)).solve();
+        let mut fit = Problem::new(upright, form, [cut, cut], Some(side), pulls).solve();
         fit.sides[1 - side] = fit.sides[side].clone();
         Some(fit.priced(cut.cost / points, form))
     };
@@ -241,6 +254,7 @@ struct Problem<'a> {
     spread: f64,
     at: DVector<f64>,
     judged: Option<usize>,
+    pulls: &'a [CornerPull],
 }
 
 /// The template of a vector of parameters.
@@ -251,6 +265,10 @@ struct TemplateModel {
 }
 
 impl TemplateModel {
+    fn sampled(&self) -> [Vec<SampledBow>; 2] {
+        [0, 1].map(|s: usize| self.sides[s].iter().copied().map(SampledBow::from).collect())
+    }
+
     /// A point of the upright outline in the frame of the axis, seen from a side.
     fn seen(&self, p: Point2, side: usize) -> Point2 {
         let q = Rotation2::new(-self.turn) * p;
@@ -259,9 +277,15 @@ impl TemplateModel {
 }
 
 impl<'a> Problem<'a> {
-    fn new(upright: &'a Upright, form: &'a Form, start: [&Cut; 2], judged: Option<usize>) -> Self {
+    fn new(
+        upright: &'a Upright,
+        form: &'a Form,
+        start: [&Cut; 2],
+        judged: Option<usize>,
+        pulls: &'a [CornerPull],
+    ) -> Self {
         let at = packed(form, [&start[0].edges, &start[1].edges]);
-        Problem { upright, form, spread: SPREAD * upright.size, at, judged }
+        Problem { upright, form, spread: SPREAD * upright.size, at, judged, pulls }
     }
 
     fn solve(mut self) -> Fit {
@@ -298,8 +322,9 @@ impl<'a> Problem<'a> {
     fn pairs(&self, m: &TemplateModel, far: f64) -> Vec<FitPair> {
         let trust = |r: f64| 1.0 / (1.0 + (r / (far * self.spread)).powi(2));
         let mut pairs = Vec::new();
+        let sampled = m.sampled();
         for (p, unseen) in self.upright.points.iter().zip(&self.upright.unseen) {
-            let (side, edge, t, off) = nearest(m, *p);
+            let (side, edge, t, off) = nearest(m, &sampled, *p);
             let on = &m.sides[side][edge];
             let along = unit(off, on.direction(t));
             let weight = if *unseen { 0.0 } else { trust(off.norm()) };
@@ -330,14 +355,21 @@ impl<'a> Problem<'a> {
         all[i] || all[(i + 1) % all.len()]
     }
 
-    /// What is left over, weighted.
+    /// What is left over of a pair, weighted.
+    fn left(&self, m: &TemplateModel, p: &FitPair) -> f64 {
+        let off = m.seen(p.point, p.side) - m.sides[p.side][p.edge].at(p.t);
+        p.weight * off.dot(&p.along) / self.spread
+    }
+
+    /// What is left over, weighted: of each pair, then of the beliefs.
     fn rest(&self, at: &DVector<f64>, pairs: &[FitPair]) -> DVector<f64> {
         let m = model(self.form, at);
-        let of = |p: &FitPair| {
-            let off = m.seen(p.point, p.side) - m.sides[p.side][p.edge].at(p.t);
-            p.weight * off.dot(&p.along) / self.spread
-        };
-        let mut all: Vec<f64> = pairs.iter().map(of).collect();
+        let mut all: Vec<f64> = pairs.iter().map(|p| self.left(&m, p)).collect();
+        self.believed(&m, &mut all);
+        DVector::from_vec(all)
+    }
+
+    fn believed(&self, m: &TemplateModel, all: &mut Vec<f64>) {
         // What one half does not show is taken from the other, sleeves and legs too.
         let completes = self.judged.is_some() || self.upright.unseen.contains(&true);
         for (k, e) in self.form.edges.iter().enumerate() {
@@ -354,15 +386,28 @@ impl<'a> Problem<'a> {
             all.extend(corner.iter().map(|c| c / (ALIKE[0] * self.upright.size)));
             all.extend(bows.map(|b| b / ALIKE[1]));
         }
-        DVector::from_vec(all)
+        for CornerPull { side, edge, seen } in self.pulls {
+            let off = m.sides[*side][*edge].b - m.seen(*seen, *side);
+            all.extend(off.iter().map(|d| d / (SEEN * self.upright.size)));
+        }
     }
 
+    /// By how much `before`, what is left over, changes with each parameter.
     fn slopes(&self, pairs: &[FitPair], before: &DVector<f64>) -> DMatrix<f64> {
         let mut slopes = DMatrix::zeros(before.len(), self.at.len());
+        let mut believed = Vec::new();
         for k in 0..self.at.len() {
             let mut moved = self.at.clone();
             moved[k] += DIFFERENCE;
-            slopes.set_column(k, &((self.rest(&moved, pairs) - before) / DIFFERENCE));
+            let m = model(self.form, &moved);
+            for (i, p) in pairs.iter().enumerate().filter(|(_, p)| moves(self.form, k, p)) {
+                slopes[(i, k)] = (self.left(&m, p) - before[i]) / DIFFERENCE;
+            }
+            believed.clear();
+            self.believed(&m, &mut believed);
+            for (i, rest) in (pairs.len()..).zip(&believed) {
+                slopes[(i, k)] = (rest - before[i]) / DIFFERENCE;
+            }
         }
         slopes
     }
@@ -373,8 +418,9 @@ impl<'a> Problem<'a> {
         let mut sum = 0.0;
         let mut count = 0.0;
         let counts = |side: usize| self.judged.is_none_or(|only| only == side);
+        let sampled = m.sampled();
         for (p, _) in self.upright.points.iter().zip(&self.upright.unseen).filter(|(_, unseen)| !**unseen) {
-            let (side, edge, _, off) = nearest(&m, *p);
+            let (side, edge, _, off) = nearest(&m, &sampled, *p);
             if counts(side) {
                 misses[edge].push(off.norm());
                 sum += (off.norm() / self.spread).powi(2).min(MOST);
@@ -402,16 +448,16 @@ fn unit(off: Vector2, direction: Vector2) -> Vector2 {
 }
 
 /// Side, edge and parameter of the template's place nearest to a point, and the way from it to the
-/// point.
-fn nearest(m: &TemplateModel, p: Point2) -> (usize, usize, f64, Vector2) {
+/// point. `sampled` are the template's edges.
+fn nearest(m: &TemplateModel, sampled: &[Vec<SampledBow>; 2], p: Point2) -> (usize, usize, f64, Vector2) {
     let mut best = (0, 0, 0.0, Vector2::repeat(f64::INFINITY));
-    for (side, edges) in m.sides.iter().enumerate() {
+    for (side, edges) in sampled.iter().enumerate() {
         let q = m.seen(p, side);
         for (k, bow) in edges.iter().enumerate() {
-            let t = bow.nearest(q);
-            let off = q - bow.at(t);
-            if off.norm_squared() < best.3.norm_squared() {
-                best = (side, k, t, off);
+            if let Some((t, off)) = bow.nearest(q, best.3.norm()) {
+                if off.norm_squared() < best.3.norm_squared() {
+                    best = (side, k, t, off);
+                }
             }
         }
     }
@@ -438,8 +484,11 @@ fn own(edges: &[EdgeForm], k: usize) -> bool {
     edges[k].own_end || (k > 0 && edges[k - 1].own_end)
 }
 
-/// Which parameter of a template is the place of its axis.
+/// Which parameter of a template is the place of its axis, how many there are of the axis and its
+/// ends, and how many of an edge: two of its bow and two of its end.
 const SHIFT: usize = 1;
+const AXIS: usize = 4;
+const PER_EDGE: usize = 4;
 
 /// Parameters of a template: the axis, the heights of its ends on the axis, and corners and bows of
 /// each side.
@@ -459,9 +508,23 @@ fn packed(form: &Form, sides: [&[Bow]; 2]) -> DVector<f64> {
     DVector::from_vec(at)
 }
 
+/// Whether a parameter, by its number, moves what a pair compares.
+fn moves(form: &Form, k: usize, pair: &FitPair) -> bool {
+    let last = form.edges.len() - 1;
+    match k.checked_sub(AXIS) {
+        // The ends on the axis, of both sides.
+        None => k <= SHIFT || pair.edge == if k == AXIS - 1 { last } else { 0 },
+        Some(k) => {
+            let (side, k) = (k / (PER_EDGE * last + 2), k % (PER_EDGE * last + 2));
+            let (edge, is_bow) = (k / PER_EDGE, k % PER_EDGE < 2);
+            side == pair.side && (edge == pair.edge || (!is_bow && edge + 1 == pair.edge))
+        }
+    }
+}
+
 fn model(form: &Form, at: &DVector<f64>) -> TemplateModel {
     let last = form.edges.len() - 1;
-    let mut numbers = at.iter().skip(4).copied();
+    let mut numbers = at.iter().skip(AXIS).copied();
     let mut two = || [0, 1].map(|_| numbers.next().unwrap_or(0.0));
     let sides = [0, 1].map(|_| {
         let mut from = Point2::new(0.0, at[2]);

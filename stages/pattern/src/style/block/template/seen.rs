@@ -16,8 +16,26 @@ use toile_recognise::{Landmark, SeenGarment};
 /// fork, to the waist.
 const HIP: [f64; 2] = [0.75, 0.35];
 
+/// Spread of seen corners about those of the right template, as a share of the garment's size, and
+/// the square, in spreads, that one counts at most.
+const SPREAD: f64 = 0.05;
+const MOST: f64 = 9.0;
+
 /// Landmarks of both sides in the frame of an upright outline, the left side seen in a mirror.
-pub(crate) struct SeenCorners([Vec<(Landmark, Point2)>; 2]);
+pub(crate) struct SeenCorners {
+    sides: [Vec<(Landmark, Point2)>; 2],
+    /// Whether corners are drawn to them, beside the outline.
+    are_pulled: bool,
+}
+
+/// A corner of a template that is drawn to where it is seen.
+pub(crate) struct CornerPull {
+    pub side: usize,
+    /// The edge that ends there.
+    pub edge: usize,
+    /// In the frame of the upright outline.
+    pub seen: Point2,
+}
 
 /// The landmarks of the right side of a picture, and those of its left.
 const SIDES: [[Landmark; 9]; 2] = [
@@ -48,9 +66,49 @@ const SIDES: [[Landmark; 9]; 2] = [
 /// Landmarks that lie on the axis.
 const MIDDLE: [Landmark; 2] = [Landmark::NeckFront, Landmark::Fork];
 
+/// The landmark, on the right side, at which an edge of a form ends; none where it has no name, or
+/// lies on the axis.
+fn named(form: &Form, k: usize) -> Option<Landmark> {
+    let next = form.edges.get(k + 1).map(|e| e.role)?;
+    match (form.edges[k].role, next) {
+        (EdgeRole::Hem, _) if form.begins_at_fork() => Some(Landmark::LegRightOuter),
+        (EdgeRole::Hem, _) => Some(Landmark::HemRight),
+        (EdgeRole::Inseam, _) => Some(Landmark::LegRightInner),
+        (EdgeRole::Skirt | EdgeRole::Hip, _) => Some(Landmark::WaistRight),
+        (EdgeRole::Side, EdgeRole::Hip) => None,
+        (EdgeRole::Side, EdgeRole::Cuff) => Some(Landmark::CuffRightInner),
+        (EdgeRole::Side, _) => Some(Landmark::ArmpitRight),
+        (EdgeRole::Underarm, _) => Some(Landmark::CuffRightInner),
+        (EdgeRole::Cuff, _) => Some(Landmark::CuffRightOuter),
+        (EdgeRole::Top | EdgeRole::Armhole, _) => Some(Landmark::ShoulderRight),
+        (EdgeRole::Shoulder, _) => Some(Landmark::NeckRight),
+        _ => None,
+    }
+}
+
 impl SeenCorners {
+    /// How far the corners of a template lie from where they are seen: the mean of squares, in
+    /// spreads; 0 where none of them is seen. `corner` gives the end of an edge of a side, where it
+    /// counts.
+    pub(crate) fn astray(
+        &self,
+        form: &Form,
+        size: f64,
+        corner: impl Fn(usize, usize) -> Option<Point2>,
+    ) -> f64 {
+        let edges = (0..2).flat_map(|side| (0..form.edges.len()).map(move |k| (side, k)));
+        let off = |(side, k): (usize, usize)| {
+            let seen = self.at(side, named(form, k)?)?;
+            Some(((corner(side, k)? - seen).norm() / (SPREAD * size)).powi(2).min(MOST))
+        };
+        let all: Vec<f64> = edges.filter_map(off).collect();
+        all.iter().sum::<f64>() / all.len().max(1) as f64
+    }
+
     /// Of what is seen in the photo of an outline that lies there like `frame`.
-    pub(crate) fn of(seen: &SeenGarment, upright: &Upright, frame: &PhotoFrame) -> Self {
+    /// In an outline that was opened along what the network sees (`are_pulled`) its corners are
+    /// drawn to where it sees them: how far up it is opened does not show.
+    pub(crate) fn of(seen: &SeenGarment, upright: &Upright, frame: &PhotoFrame, are_pulled: bool) -> Self {
         let place = |landmark: Landmark| {
             let found = seen.landmark(landmark)?;
             Some(upright.stood(frame.to_metres(found.place)))
@@ -64,12 +122,23 @@ impl SeenCorners {
             let mirror = |p: Point2| Point2::new(if k == 0 { p.x } else { -p.x }, p.y);
             outer.chain(middle).map(|(name, p)| (name, mirror(p))).collect()
         };
-        SeenCorners([side(0), side(1)])
+        SeenCorners { sides: [side(0), side(1)], are_pulled }
     }
 
     /// A landmark of a side.
     fn at(&self, side: usize, name: Landmark) -> Option<Point2> {
-        self.0[side].iter().find(|(other, _)| *other == name).map(|(_, p)| *p)
+        self.sides[side].iter().find(|(other, _)| *other == name).map(|(_, p)| *p)
+    }
+
+    /// The corners of a form that are drawn to where they are seen.
+    pub(crate) fn pulls(&self, form: &Form) -> Vec<CornerPull> {
+        let edges = (0..2).flat_map(|side| (0..form.edges.len()).map(move |edge| (side, edge)));
+        let pull = |(side, edge): (usize, usize)| {
+            let p = self.at(side, named(form, edge)?)?;
+            let seen = Point2::new(if side == 0 { p.x } else { -p.x }, p.y);
+            Some(CornerPull { side, edge, seen })
+        };
+        edges.filter(|_| self.are_pulled).filter_map(pull).collect()
     }
 
     /// Where the axis of a form runs: through the fork, or half-way between the ends of the hem.
@@ -102,24 +171,15 @@ impl SeenCorners {
         for (k, e) in form.edges.iter().enumerate() {
             let next = form.edges.get(k + 1).map(|e| e.role);
             let between = |low: Point2, high: Point2, share: f64| low + (high - low) * share;
-            let end = match (e.role, next) {
-                (_, None) => Point2::new(0.0, last),
-                (EdgeRole::Hem, _) if form.begins_at_fork() => at(Landmark::LegRightOuter)?,
-                (EdgeRole::Hem, _) => at(Landmark::HemRight)?,
-                (EdgeRole::Inseam, _) => at(Landmark::LegRightInner)?,
-                (EdgeRole::Skirt | EdgeRole::Hip, _) => at(Landmark::WaistRight)?,
-                (EdgeRole::Side, Some(EdgeRole::Hip)) => between(from, at(Landmark::WaistRight)?, HIP[0]),
-                (EdgeRole::Outseam, _) => {
+            let end = match (named(form, k), e.role) {
+                (Some(name), _) => at(name)?,
+                (None, EdgeRole::Side) => between(from, at(Landmark::WaistRight)?, HIP[0]),
+                (None, EdgeRole::Outseam) => {
                     let waist = at(Landmark::WaistRight)?;
                     let beside = (first - from.y) / (waist.y - from.y).max(f64::MIN_POSITIVE);
                     between(from, waist, beside.clamp(0.0, 1.0) * (1.0 - HIP[1]) + HIP[1])
                 }
-                (EdgeRole::Side, Some(EdgeRole::Cuff)) => at(Landmark::CuffRightInner)?,
-                (EdgeRole::Side, _) => at(Landmark::ArmpitRight)?,
-                (EdgeRole::Underarm, _) => at(Landmark::CuffRightInner)?,
-                (EdgeRole::Cuff, _) => at(Landmark::CuffRightOuter)?,
-                (EdgeRole::Top | EdgeRole::Armhole, _) => at(Landmark::ShoulderRight)?,
-                (EdgeRole::Shoulder, _) => at(Landmark::NeckRight)?,
+                (None, _) if next.is_none() => Point2::new(0.0, last),
                 _ => return None,
             };
             let is_astray = next.is_some() && e.role != EdgeRole::Inseam && end.x <= 0.0;
@@ -154,9 +214,13 @@ mod tests {
         places.map(|(name, [x, y])| (name, Point2::new(x, y))).to_vec()
     }
 
+    fn corners(sides: [Vec<(Landmark, Point2)>; 2]) -> SeenCorners {
+        SeenCorners { sides, are_pulled: true }
+    }
+
     #[test]
     fn a_template_runs_through_all_landmarks_of_its_form() {
-        let [right, left] = SeenCorners([shirt(), shirt()]).edges(&form::TEE, 0.0).unwrap();
+        let [right, left] = corners([shirt(), shirt()]).edges(&form::TEE, 0.0).unwrap();
         assert_eq!(right, left);
         let ends: Vec<Point2> = right.iter().map(|e| e.b).collect();
         assert_eq!(ends, shirt().into_iter().map(|(_, p)| p).collect::<Vec<_>>());
@@ -166,18 +230,28 @@ mod tests {
     #[test]
     fn the_axis_runs_half_way_between_the_ends_of_the_hem() {
         let moved = |by: f64| shirt().into_iter().map(|(n, p)| (n, p + Vector2::new(by, 0.0))).collect();
-        let corners = SeenCorners([moved(0.03), moved(-0.03)]);
-        let shift = corners.shift(&form::TEE).unwrap();
+        let seen = corners([moved(0.03), moved(-0.03)]);
+        let shift = seen.shift(&form::TEE).unwrap();
         assert!((shift - 0.03).abs() < 1e-12, "{shift}");
-        let [right, left] = corners.edges(&form::TEE, shift).unwrap();
+        let [right, left] = seen.edges(&form::TEE, shift).unwrap();
         assert!((right[0].b - left[0].b).norm() < 1e-12 && (right[0].b.x - 0.26).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_template_through_the_landmarks_is_not_astray() {
+        let seen = corners([shirt(), shirt()]);
+        let edges = seen.edges(&form::TEE, 0.0).unwrap();
+        let astray =
+            |by: f64| seen.astray(&form::TEE, 0.5, |side, k| Some(edges[side][k].b + Vector2::new(0.0, by)));
+        assert_eq!(astray(0.0), 0.0);
+        assert!((astray(0.05) - 4.0).abs() < 1e-9 && (astray(1.0) - MOST).abs() < 1e-12);
     }
 
     #[test]
     fn a_form_with_a_corner_that_is_not_seen_has_no_start() {
         let without = |name: Landmark| shirt().into_iter().filter(|(n, _)| *n != name).collect::<Vec<_>>();
-        let corners = SeenCorners([shirt(), without(Landmark::ArmpitRight)]);
-        assert_eq!(corners.edges(&form::TEE, 0.0), None);
-        assert_eq!(SeenCorners([shirt(), shirt()]).edges(&form::TROUSERS, 0.0), None);
+        let seen = corners([shirt(), without(Landmark::ArmpitRight)]);
+        assert_eq!(seen.edges(&form::TEE, 0.0), None);
+        assert_eq!(corners([shirt(), shirt()]).edges(&form::TROUSERS, 0.0), None);
     }
 }
