@@ -28,11 +28,12 @@ pub(super) struct ChosenMask {
 }
 
 /// The mask with the most confidence, then the most agreement; the first of equals. `None` where no
-/// method found anything.
+/// method found anything. `seen` is the garment that a network sees.
 pub(super) fn choose(
     small: &SmallPhoto,
     large: &SmallPhoto,
     found: &[MethodMask],
+    seen: Option<&[bool]>,
     cx: &Context,
 ) -> Result<Option<ChosenMask>, StageError> {
     let evidence = |i: usize| {
@@ -41,6 +42,7 @@ pub(super) fn choose(
         // Contours are looked at where pixels are smaller.
         MaskEvidence {
             agreement: MaskEvidence::of(small, &found[i].mask, &others).agreement,
+            seen: seen.map_or(0.0, |seen| overlap(&found[i].mask, seen)),
             ..at_large(small, large, &found[i].mask)
         }
     };

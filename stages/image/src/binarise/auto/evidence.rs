@@ -16,6 +16,9 @@ const AGREE: [f64; 2] = [0.88, 0.96];
 /// The weight of the method that agrees best, beside the second best: two that agree almost exactly
 /// while all others miss a stripe are right more often than three that agree roughly.
 const FIRST: f64 = 0.7;
+/// The same of what a network sees, at a hundredth of the photo's width, and which shares nothing
+/// with the methods: masks that are right agree with it to 0.95.
+const SEEN: [f64; 2] = [0.88, 0.95];
 /// Mirror images alike.
 const ALIKE: [f64; 2] = [0.65, 0.85];
 /// Share of the contour on edges of the photo.
@@ -30,6 +33,8 @@ pub(super) struct MaskEvidence {
     pub symmetry: f64,
     /// Share of its contour on an edge of the photo, 0 to 1.
     pub support: f64,
+    /// Intersection over union with what a network sees, 0 to 1; 0 without a network.
+    pub seen: f64,
 }
 
 impl MaskEvidence {
@@ -43,6 +48,7 @@ impl MaskEvidence {
             agreement: FIRST * first + (1.0 - FIRST) * second,
             symmetry: symmetry(mask, small.w).map_or(0.0, |s| s.share),
             support: support(small, mask),
+            seen: 0.0,
         }
     }
 
@@ -53,7 +59,8 @@ impl MaskEvidence {
 
     /// Agreement, edges and mirror image, each 0 to 1.
     pub(super) fn parts(&self) -> [f64; 3] {
-        [ramp(self.agreement, AGREE), ramp(self.support, ON_EDGES), ramp(self.symmetry, ALIKE)]
+        let agree = ramp(self.agreement, AGREE).max(ramp(self.seen, SEEN));
+        [agree, ramp(self.support, ON_EDGES), ramp(self.symmetry, ALIKE)]
     }
 }
 

@@ -194,7 +194,8 @@ impl Auto {
         let seen = self.network.then(|| network::seen(photo)).transpose()?;
         let found = methods(&small, given, seen.as_ref(), cx)?;
         cx.progress(0.6, "methods compared");
-        let Some(choice) = choose(&small, &large, &found, cx)? else {
+        let garment = seen.as_ref().map(|seen| network::garment(&small, seen));
+        let Some(choice) = choose(&small, &large, &found, garment.as_deref(), cx)? else {
             return Err(no_garment(photo, "no method parts it from the ground along the frame", NEXT));
         };
         let ChosenMask { coarse, evidence, larger, .. } = &choice;
@@ -203,9 +204,12 @@ impl Auto {
         cx.figure("agreement", evidence.agreement, "");
         cx.figure("edges", 100.0 * evidence.support, "% of the outline");
         cx.figure("symmetry", evidence.symmetry, "");
-        let large = match seen.filter(|seen| network::agrees(&small, &coarse.mask, seen)) {
-            Some(seen) => network::with_odds(large, &seen),
-            None => large,
+        cx.figure("seen", evidence.seen, "");
+        let large = match seen.zip(garment) {
+            Some((seen, garment)) if network::agrees(&coarse.mask, &garment) => {
+                network::with_odds(large, &seen)
+            }
+            _ => large,
         };
         let cut = GraphCut::default();
         let (fine, inlets) =

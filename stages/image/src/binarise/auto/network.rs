@@ -38,9 +38,13 @@ pub(super) fn with_odds(small: SmallPhoto, seen: &SeenGarment) -> SmallPhoto {
     SmallPhoto { odds: Some(odds), ..small }
 }
 
+/// The garment as the network alone sees it.
+pub(super) fn garment(small: &SmallPhoto, seen: &SeenGarment) -> Vec<bool> {
+    seen.mask(small.w, small.h).iter().map(|p| *p > 0.5).collect()
+}
+
 /// Whether a mask is what the network sees but for its border, so that the network may have a say
 /// in where that runs.
-pub(super) fn agrees(small: &SmallPhoto, mask: &[bool], seen: &SeenGarment) -> bool {
-    let garment: Vec<bool> = seen.mask(small.w, small.h).iter().map(|p| *p > 0.5).collect();
-    overlap(mask, &garment) >= AGREES
+pub(super) fn agrees(mask: &[bool], garment: &[bool]) -> bool {
+    overlap(mask, garment) >= AGREES
 }

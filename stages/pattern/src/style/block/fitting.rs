@@ -10,11 +10,14 @@
 
 use super::elastic::is_drawn_in;
 use super::likely::SeenPhoto;
+use super::pieces;
 use super::wearable::{KEPT, NARROWEST};
 use super::{Block, BlockStyle, FRONT, Fitted, Front, Sides, Waist, refusal};
 use crate::style::block::template::complete::Complete;
 use crate::style::block::template::fit::Fit;
+use crate::style::block::template::flat::Side;
 use crate::style::block::template::form::Form;
+use crate::style::block::template::piece_role::Layer;
 use toile_body::Mannequin;
 use toile_core::param::ron_options;
 use toile_core::prelude::*;
@@ -251,6 +254,8 @@ struct Tape {
     sleeve: Option<f64>,
     /// Whether it has two legs.
     has_legs: bool,
+    /// Around the hem of what hangs from the neck: it goes around the hip, or above it.
+    hem: Option<f64>,
 }
 
 impl Tape {
@@ -285,7 +290,9 @@ impl Tape {
             s[k].length() + s[k + 1].length() + s[k + 1].b.x
         };
         let sleeve = at(EdgeRole::Top).filter(|_| is_long).map(|k| mean(&|s| along(s, k)));
-        Tape { girths: [chest, waist, hip], length, sleeve, has_legs: form.has_legs() }
+        let hangs = form.ends_at(EdgeRole::Neck) && at(EdgeRole::Skirt).is_none();
+        let hem = at(EdgeRole::Hem).filter(|k| hangs && *k == 0).map(|k| across(k + 1));
+        Tape { girths: [chest, waist, hip], length, sleeve, has_legs: form.has_legs(), hem }
     }
 
     /// How far a size is from wearing it as usual: the mean square of what is measured, in spreads.
@@ -301,8 +308,10 @@ impl Tape {
         };
         let long = self.length.map(|(l, [usual, spread])| (l * 100.0 / height - usual) / spread);
         let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);
-        let all: Vec<f64> =
-            (0..3).filter_map(girth).chain(long).chain(sleeve).map(|x| (x * x).min(MOST)).collect();
+        // A hem above the hip, or one that a rib draws in, may be narrower: it counts where it is.
+        let hem = self.hem.map(|hem| (hem * 100.0 / hip - 1.0).min(0.0) / EASE[HIP][1]);
+        let measured = (0..3).filter_map(girth).chain(long).chain(sleeve);
+        let all: Vec<f64> = measured.chain(hem.filter(|off| *off < 0.0)).map(|x| (x * x).min(MOST)).collect();
         let is_too_small = |k: usize| self.girths[k].is_some_and(|g| g * 100.0 < NARROWEST * body[k]);
         let refused = if (0..3).any(is_too_small) { REFUSED } else { 0.0 };
         let height = (height - LIKELY[0]) / LIKELY[1];
@@ -362,16 +371,17 @@ fn out(fit: &Fit, cuff: usize) -> f64 {
 /// cuff; degrees. As the trunk takes its depth, its armpits come inwards and the points of its
 /// shoulders do not: caps turn, and sleeves hang lower than they lie.
 fn arms(form: &Form, fit: &Fit) -> f64 {
-    let Some(k) = form.underarm() else {
+    if form.underarm().is_none() {
         return form.at(EdgeRole::Cuff).map_or(ARMS, |k| out(fit, k));
-    };
+    }
     let from_vertical = |way: Vector2| way.x.atan2(-way.y).to_degrees();
-    let angle = |s: &Vec<crate::style::block::template::bow::Bow>| {
-        let (armpit, shoulder) = (s[k].a, s[k + 2].b);
-        let cuff = nalgebra::center(&s[k + 1].a, &s[k + 1].b);
+    let angle = |side: usize| {
+        let cut = pieces::cut_sleeve(&Side::of(fit, form, Layer::Front, side), form)?;
+        let [armpit, shoulder] = cut.ends()?;
         let worn = Point2::new(armpit.x * (1.0 - CLOSED), armpit.y);
         let turn = from_vertical(armpit - shoulder) - from_vertical(worn - shoulder);
-        from_vertical(cuff - nalgebra::center(&armpit, &shoulder)) - turn
+        Some(from_vertical(cut.way()?) - turn)
     };
-    0.5 * fit.sides.iter().map(angle).sum::<f64>()
+    let both: Vec<f64> = (0..2).filter_map(angle).collect();
+    both.iter().sum::<f64>() / both.len().max(1) as f64
 }

@@ -108,14 +108,11 @@ impl Cutting {
         let Some(k) = form.underarm() else {
             return Cutting { trunk: (first..last).map(run).collect(), sleeve: None };
         };
-        let [underarm, cuff] = [k, k + 1].map(|k| side.edges[k].1);
-        let armpit = underarm.0[0];
-        let upper: Vec<Curve> = side.edges[k + 2..last].iter().map(|e| e.1).collect();
-        let [top, shoulder] = parted(&upper, armpit);
+        let (shape, shoulder) = lying_sleeve(side, form, k);
+        let armpit = shape.underarm.0[0];
         let armhole = arched(armpit, shoulder[0].0[0]);
         let mut trunk: Vec<_> = (first..k).map(run).collect();
         trunk.extend([(EdgeRole::Armhole, Run::Cubic(armhole)), (EdgeRole::Shoulder, Run::of(shoulder))]);
-        let shape = SleeveShape { underarm, cuff, top };
         let shape = if is_cut { shape.straightened() } else { Some(shape) };
         let sleeve = shape.and_then(|shape| {
             let [armpit, point] = shape.ends()?;
@@ -128,6 +125,20 @@ impl Cutting {
         });
         Cutting { trunk, sleeve }
     }
+}
+
+/// The sleeve of a side as it lies, whose underarm is the edge of that number, and the shoulder
+/// beside it.
+fn lying_sleeve(side: &Side, form: &Form, k: usize) -> (SleeveShape, Vec<Curve>) {
+    let [underarm, cuff] = [k, k + 1].map(|k| side.edges[k].1);
+    let upper: Vec<Curve> = side.edges[k + 2..form.edges.len() - 1].iter().map(|e| e.1).collect();
+    let [top, shoulder] = parted(&upper, underarm.0[0]);
+    (SleeveShape { underarm, cuff, top }, shoulder)
+}
+
+/// The sleeve of a side as it is cut; none of a form without set-in sleeves.
+pub(super) fn cut_sleeve(side: &Side, form: &Form) -> Option<SleeveShape> {
+    lying_sleeve(side, form, form.underarm()?).0.straightened()
 }
 
 /// The upper border from cuff to neck, parted at the shoulder point.

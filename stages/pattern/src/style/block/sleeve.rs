@@ -11,7 +11,7 @@ use crate::style::block::template::curve::Curve;
 use crate::style::block::template::flat::{PARTS, straight};
 use nalgebra::Rotation2;
 use std::f64::consts::FRAC_PI_2;
-use toile_core::artifact::Point2;
+use toile_core::artifact::{Point2, Vector2};
 
 /// Width at the armpit, as a share of the armhole's chord: a cap of two thirds, and of a quarter.
 const WIDE: [f64; 2] = [0.75, 0.97];
@@ -30,8 +30,8 @@ impl SleeveShape {
         Some([self.underarm.0[0], self.top.last()?.0[3]])
     }
 
-    /// The sleeve straightened, where its middle lies; a short one as it lies. None where it has no
-    /// length.
+    /// The sleeve straightened, as it stands off with its cap along the armhole; a short one as it
+    /// lies. None where it has no length.
     pub(super) fn straightened(self) -> Option<Self> {
         let [armpit, shoulder] = self.ends()?;
         let cap = (shoulder - armpit).norm();
@@ -39,15 +39,13 @@ impl SleeveShape {
         if lengths[0] < cap {
             return Some(self);
         }
-        let middle = nalgebra::center(&armpit, &shoulder);
-        let down = (nalgebra::center(&self.cuff.0[0], &self.cuff.0[3]) - middle).try_normalize(1e-9)?;
-        let across = Rotation2::new(FRAC_PI_2) * down;
         let cuff = self.cuff.length();
         let wide = self.widest().clamp(WIDE[0] * cap, WIDE[1] * cap);
         let high = (cap * cap - wide * wide).max(0.0).sqrt();
         let long = 0.5 * (lengths[0] + lengths[1] + high);
-        // Over the middle of the cap as it lies.
-        let shoulder = middle + across * (0.5 * wide) - down * (0.5 * high);
+        // Its cap lies along the armhole.
+        let down = Rotation2::new(wide.atan2(high)) * (armpit - shoulder).try_normalize(1e-9)?;
+        let across = Rotation2::new(FRAC_PI_2) * down;
         let at = |along: f64, inwards: f64| shoulder + down * along - across * inwards;
         let [armpit, inner, outer] = [at(high, wide), at(long, cuff), at(long, 0.0)];
         Some(SleeveShape {
@@ -55,6 +53,12 @@ impl SleeveShape {
             cuff: straight(inner, outer),
             top: vec![straight(outer, shoulder)],
         })
+    }
+
+    /// From the middle of the cap to that of the cuff.
+    pub(super) fn way(&self) -> Option<Vector2> {
+        let [armpit, shoulder] = self.ends()?;
+        Some(nalgebra::center(&self.cuff.0[0], &self.cuff.0[3]) - nalgebra::center(&armpit, &shoulder))
     }
 
     /// How far the underarm lies from the top at most.
@@ -93,6 +97,8 @@ mod tests {
         let [armpit, shoulder] = cut.ends().unwrap();
         let cap = (Point2::new(0.25, 0.4) - Point2::new(0.3, 0.6)).norm();
         assert!(((shoulder - armpit).norm() - cap).abs() < 1e-12);
+        assert!((armpit - Point2::new(0.25, 0.4)).norm() < 1e-12, "its cap lies along the armhole");
+        assert!(cut.way().unwrap().x > 0.2, "it stands off");
         assert!(right_angle(&cut).abs() < 1e-12);
         assert!((cut.cuff.length() - 0.1).abs() < 1e-12);
         assert!(cut.underarm.length() > 0.45 && cut.top[0].length() > 0.55);
