@@ -231,8 +231,8 @@ fn cut_hint(stage: &str, touch: f64, next: &str) -> String {
     // The next tenth, so that the option holds for a photo a little different.
     let enough = (touch * 10.0).floor() / 10.0 + 0.1;
     format!(
-        "leave a margin of ground on all sides; if nothing of it is cut off, let it touch the frame: --set 'stages.{stage}.touch={enough:.1}'; if one \
-         half is whole, add `complete: Mirror` to the style `Block`; if there is a margin, ground was taken for garment: try {next}"
+        "leave a margin of ground on all sides; if nothing of it is cut off, or one half is whole, let it \
+         touch the frame: --set 'stages.{stage}.touch={enough:.1}'; if there is a margin, ground was taken for garment: try {next}"
     )
 }
 

@@ -237,8 +237,8 @@ fn a_garment_cut_by_the_frame_is_refused_unless_allowed() {
         error.to_string(),
         "the garment in \"front.jpg\" is cut by the frame: it touches it over 40 px"
     );
-    let hint = "leave a margin of ground on all sides; if nothing of it is cut off, let it touch the frame: --set 'stages.test.touch=0.5'; if one \
-                half is whole, add `complete: Mirror` to the style `Block`; if there is a margin, ground was taken for garment: try `GraphCut()`";
+    let hint = "leave a margin of ground on all sides; if nothing of it is cut off, or one half is whole, let it \
+         touch the frame: --set 'stages.test.touch=0.5'; if there is a margin, ground was taken for garment: try `GraphCut()`";
     assert_eq!(error.hint.unwrap(), hint);
     let allowed = Otsu { touch: 0.5, ..Otsu::default() };
     assert_eq!(allowed.run(&cut, &Context::quiet()).unwrap().area_px(), 3200);

@@ -57,7 +57,7 @@ fn scene(garment: &str, body: &str) -> Scene {
     let body = mannequin(body).unwrap();
     let outlines = ["front", "back"].map(|s| (s.to_owned(), outline(garment, s))).into_iter().collect();
     let style = crate::style::Outline::default();
-    let (pattern, outlines, plan) = style.run(outlines, &body, &Context::quiet()).unwrap();
+    let (pattern, outlines, plan) = style.run(outlines, &body, None, &Context::quiet()).unwrap();
     let mesher: DelaunayMesher = toile_core::param::ron_options().from_str("(edge: \"12 mm\")").unwrap();
     let panel = |(name, o): (&str, &Outline)| (name.to_owned(), mesher.run(o, &Context::quiet()).unwrap());
     Scene { panels: outlines.iter().map(panel).collect(), pattern, plan, body, fabric: poplin() }

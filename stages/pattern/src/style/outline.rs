@@ -8,6 +8,7 @@
 
 mod threads;
 
+use super::block::template::complete::mark;
 use super::block::template::fit::Fit;
 use super::block::template::form::{Form, LONG, TEE, VEST};
 use super::block::{Block, BlockStyle, Fitted, LAY, Layer, Stand, check_wearable, no_front};
@@ -107,9 +108,14 @@ impl Outline {
         &self,
         outlines: Set<Shape>,
         body: &Body,
+        #[original] photos: Option<Set<Photo>>,
         cx: &Context,
     ) -> Result<(Pattern, Set<Shape>, SewingPlan), StageError> {
         let (template, laid) = self.best(&outlines, cx)?;
+        for l in &laid {
+            let photo = photos.as_ref().and_then(|all| all.get(l.panel));
+            photo.map_or(Ok(()), |photo| whole(l, &outlines, photo))?;
+        }
         if self.style == OutlineStyle::Auto {
             cx.note(format!(
                 "the outlines are taken for {}; to say what they are: --set 'style.style={}'",
@@ -133,6 +139,21 @@ impl Outline {
             .into_iter()
             .for_each(|what| cx.warn(what));
         Ok((pattern, outlines, plan))
+    }
+}
+
+/// Refuses an outline that the frame cuts: it would be cut as it ends there.
+fn whole(l: &Laid<'_>, outlines: &Set<Shape>, photo: &Photo) -> Result<(), StageError> {
+    let Some(outline) = outlines.get(l.panel) else { return Ok(()) };
+    let mut upright = l.fitted.upright.clone();
+    mark(&mut upright, outline, photo.pixels.dimensions(), l.panel)?;
+    match upright.unseen.contains(&true) {
+        false => Ok(()),
+        true => Err(StageError::invalid(format!(
+            "the frame cuts \"{}\", and its outline would be cut as it ends there",
+            l.panel
+        ))
+        .hint("photograph the garment with ground on all four sides; or let one half complete the other: --set 'style=Block()'")),
     }
 }
 

@@ -94,7 +94,7 @@ fn samples_get_their_names() {
 fn the_style_is_found_and_told() {
     for (garment, word, style) in [("vest", "a vest", "Vest"), ("tshirt", "a T-shirt", "TShirt")] {
         let cx = Context::quiet();
-        let (_, named, _) = super::Outline::default().run(set(garment, |o| o), &body(), &cx).unwrap();
+        let (_, named, _) = super::Outline::default().run(set(garment, |o| o), &body(), None, &cx).unwrap();
         assert_named(garment, &named, 1.0, 0.1);
         let note =
             format!("the outlines are taken for {word}; to say what they are: --set 'style.style={style}'");

@@ -114,8 +114,8 @@ fn a_garment_that_the_frame_cuts_is_refused_with_what_lets_it_pass() {
     assert_eq!(
         e.hint.as_deref(),
         Some(
-            "leave a margin of ground on all sides; if nothing of it is cut off, let it touch the frame: --set 'stages.test.touch=0.5'; if one \
-             half is whole, add `complete: Mirror` to the style `Block`; if there is a margin, ground was taken for garment: try `GraphCut()`"
+            "leave a margin of ground on all sides; if nothing of it is cut off, or one half is whole, let it \
+         touch the frame: --set 'stages.test.touch=0.5'; if there is a margin, ground was taken for garment: try `GraphCut()`"
         )
     );
     assert!(cx.take_so_far().is_some());

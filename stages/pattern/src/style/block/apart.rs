@@ -88,6 +88,8 @@ const BORDERS: [PartBorder; 3] = [
 pub(super) struct OpenedOutline {
     pub outline: Outline,
     pub what: Vec<&'static str>,
+    /// The share of the outline's area, before, that is surely ground.
+    pub ground: f64,
 }
 
 /// The outline, opened along all borders that the network sees within it; none where it sees none,
@@ -97,6 +99,14 @@ pub(super) fn opened(outline: &Outline, seen: &SeenGarment) -> Option<OpenedOutl
     let mut points = outline.outer.points.clone();
     let size = polygon_area(&points).abs().sqrt();
     let mut what = Vec::new();
+    let bare = |points: &[Point2]| {
+        ground(points, LEAST_PATCH * size * size, |p| {
+            let px = frame.to_px(p);
+            seen.probability(Part::Ground, px.x, px.y)
+        })
+    };
+    let area = |cells: &[[Point2; 4]]| cells.iter().map(|c| polygon_area(c)).sum::<f64>();
+    let ground = area(&bare(&points)) / (size * size).max(f64::MIN_POSITIVE);
     let place = |landmark: &Landmark| seen.landmark(*landmark).map(|l| frame.to_metres(l.place));
     let probability = |part: Part, p: Point2| {
         let px = frame.to_px(p);
@@ -125,13 +135,13 @@ pub(super) fn opened(outline: &Outline, seen: &SeenGarment) -> Option<OpenedOutl
             what.push(words);
         }
     }
-    let bare = ground(&points, LEAST_PATCH * size * size, |p| probability(Part::Ground, p));
-    if let Some(opened) = (!bare.is_empty()).then(|| parted(&points, &bare)).flatten() {
+    let left = bare(&points);
+    if let Some(opened) = (!left.is_empty()).then(|| parted(&points, &left)).flatten() {
         points = opened;
         what.push("the garment and the ground");
     }
     let outer = Loop { points, corners: Vec::new() };
-    (!what.is_empty()).then(|| OpenedOutline { outline: Outline { outer, ..outline.clone() }, what })
+    (!what.is_empty()).then(|| OpenedOutline { outline: Outline { outer, ..outline.clone() }, what, ground })
 }
 
 /// The cells within a closed line that are surely ground, of patches of that area at least; each is

@@ -2,13 +2,13 @@
 //!
 //! Shorts and sweatpants lie with a waist far narrower than any wearer's; worn, the elastic gives
 //! way. The drawn-in waist is not the body's, and the cloth beneath it is not cut so
-//! narrow: it is as wide as the wearer's waist at least. How much wider the cloth is cut under the
+//! narrow: it is nearly as wide as the wearer's waist at least. How much wider the cloth is cut under the
 //! elastic a photo does not show. Limits: a waist that is too narrow because the scale is wrong, of
 //! a garment whose hip fits all the same, is taken for an elastic one. A skirt may flare from a
 //! waist of its own width, so that its hip tells nothing of it: skirts are left as they lie.
 //!
-//! Ribbed cuffs lie drawn in likewise. Those of long sleeves that a rib can draw in so far are cut
-//! as wide as the wearer's arm is there.
+//! Ribbed cuffs lie drawn in likewise, and those of short sleeves folded. Where a rib or a fold may
+//! make so much, they are cut as wide as the wearer's arm is there.
 
 use super::wearable::{NARROWEST, narrower_cuff};
 use crate::style::block::template::fit::Fit;
@@ -18,11 +18,11 @@ use toile_core::prelude::*;
 /// A waist narrower than this share of the hip is drawn in: of bodies it is 0.7 at least, and
 /// garments are cut straighter than bodies.
 const DRAWN_IN: f64 = 0.66;
-/// A sleeve is long whose underarm is so many times as long as its cuff is wide.
-const LONG: f64 = 1.5;
-/// A rib draws a cuff in to no less than this share of the arm.
-const RIB: f64 = 0.55;
-/// Around such a waist, or cuff, the garment is wider than its wearer by this share.
+/// A rib draws a cuff in, and a fold hides of it, to no less than this share of the arm.
+const RIB: f64 = 0.6;
+/// Around such a waist the garment is narrower than its wearer by this share, so that it holds; and
+/// around such a cuff it is wider.
+const HOLDS: f64 = 0.04;
 const EASE: f64 = 0.03;
 
 /// Whether a waist of that girth lies drawn in, above a hip of that girth.
@@ -43,7 +43,7 @@ fn stretched_waist(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> 
     let k = form.at(EdgeRole::Waist).filter(|k| *k > 0)?;
     let waist = 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
     let (hip, needed) = (fit.hip(form)?, *body.measurements.get("waist")?);
-    let wide = (needed * (1.0 + EASE)).min(hip);
+    let wide = (needed * (1.0 - HOLDS)).min(hip);
     if !is_drawn_in(form, waist, hip) || waist >= NARROWEST * needed || waist <= 0.0 || wide <= waist {
         return None;
     }
@@ -54,15 +54,13 @@ fn stretched_waist(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> 
     Some([waist, wide])
 }
 
-/// Widens cuffs of long sleeves that no one could wear as they lie to the wearer's arm; girths of
+/// Widens cuffs that no one could wear as they lie to the wearer's arm; girths of
 /// the narrower one, metres, before and after. `None` where they are left as they are.
 fn stretched_cuffs(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
     let k = form.underarm()?;
     let narrower = narrower_cuff(form, fit, body)?;
-    // Of a short sleeve that is so narrow half is hidden.
-    let is_long = fit.sides.iter().all(|s| s[k].length() > LONG * s[k + 1].length());
     let wide = narrower.body * (1.0 + EASE);
-    if !is_long || narrower.garment >= NARROWEST * narrower.body || narrower.garment < RIB * narrower.body {
+    if narrower.garment >= NARROWEST * narrower.body || narrower.garment < RIB * narrower.body {
         return None;
     }
     for side in &mut fit.sides {

@@ -78,8 +78,9 @@ const SHORTS: f64 = 0.55;
 /// A sleeve's length along its top from the neck, as a share of the height, where it reaches the
 /// wrist.
 const SLEEVE: [f64; 2] = [0.44, 0.04];
-/// What a single figure adds at most.
+/// What a single figure adds at most; one that is too small counts more, since no one wears it.
 const MOST: f64 = 9.0;
+const MOST_NARROW: f64 = 36.0;
 /// What a size adds that is too large to wear the garment at all.
 const REFUSED: f64 = 100.0;
 /// A mean square beyond this is told: no body of the table wears it as usual.
@@ -308,10 +309,11 @@ impl Tape {
         };
         let long = self.length.map(|(l, [usual, spread])| (l * 100.0 / height - usual) / spread);
         let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);
+        let counted = |x: f64| (x * x).min(if x < 0.0 { MOST_NARROW } else { MOST });
         // A hem above the hip, or one that a rib draws in, may be narrower: it counts where it is.
         let hem = self.hem.map(|hem| (hem * 100.0 / hip - 1.0).min(0.0) / EASE[HIP][1]);
         let measured = (0..3).filter_map(girth).chain(long).chain(sleeve);
-        let all: Vec<f64> = measured.chain(hem.filter(|off| *off < 0.0)).map(|x| (x * x).min(MOST)).collect();
+        let all: Vec<f64> = measured.chain(hem.filter(|off| *off < 0.0)).map(counted).collect();
         let is_too_small = |k: usize| self.girths[k].is_some_and(|g| g * 100.0 < NARROWEST * body[k]);
         let refused = if (0..3).any(is_too_small) { REFUSED } else { 0.0 };
         let height = (height - LIKELY[0]) / LIKELY[1];

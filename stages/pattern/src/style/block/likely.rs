@@ -21,6 +21,8 @@ const SURE: f64 = 0.6;
 /// sure. Of 558 photos of senders kept out of training, the right style of 7 is contradicted so,
 /// and 74 % of wrong styles are.
 const ANOTHER: f64 = 0.1;
+/// And so does a style that is less probable than this, whether the network is sure or not.
+const NEVER: f64 = 0.03;
 
 /// A photo, and what the network sees in it; nothing where it is not to look.
 pub(in crate::style) struct SeenPhoto<'p> {
@@ -74,7 +76,8 @@ impl Likely {
     pub(super) fn instead_of(&self, name: &str) -> Option<(GarmentKind, f64)> {
         let first = self.0.first().copied()?;
         let is_sure = BlockStyle::NAMED.iter().any(|(_, other, _)| self.is_sure_of(other));
-        (is_sure && self.style(name) < ANOTHER).then_some(first)
+        let least = if is_sure { ANOTHER } else { NEVER };
+        (self.style(name) < least).then_some(first)
     }
 }
 
@@ -141,8 +144,10 @@ mod tests {
 
     #[test]
     fn only_a_network_that_is_sure_contradicts_an_outline() {
-        let doubtful = likely(&[(GarmentKind::Shorts, 0.5), (GarmentKind::Tshirt, 0.5)]);
+        let doubtful =
+            likely(&[(GarmentKind::Shorts, 0.5), (GarmentKind::Tshirt, 0.45), (GarmentKind::Skirt, 0.05)]);
         assert_eq!(doubtful.instead_of("Skirt"), None);
+        assert_eq!(doubtful.instead_of("Onepiece"), Some((GarmentKind::Shorts, 0.5)));
         let sure = likely(&[(GarmentKind::Shorts, 0.97), (GarmentKind::Skirt, 0.03)]);
         assert_eq!(sure.instead_of("Skirt"), Some((GarmentKind::Shorts, 0.97)));
         assert_eq!(sure.instead_of("Trousers"), None);

@@ -64,6 +64,11 @@ const UNSAID: f64 = 0.5;
 /// squared spread.
 const LANDMARKS: f64 = 0.3;
 
+/// What opening an outline adds to the score of a fit: a slit is no fork.
+const OPENED: f64 = 0.4;
+/// What ground within an outline adds, for each whole of its area.
+const GROUND: f64 = 10.0;
+
 /// And for a template that is judged by one half: there is less to tell it by.
 const HALF: f64 = 0.7;
 
@@ -201,7 +206,7 @@ impl Block {
         let mut before = before;
         for (what, [lies, cut]) in elastic::all_stretched(&mut before.fit, form, body) {
             cx.note(format!(
-                "{what} measures {:.0} cm around as it lies, drawn in by its elastic: it is cut {:.0} cm wide, as its wearer needs it",
+                "{what} measures {:.0} cm around as it lies, drawn in or folded: it is cut {:.0} cm wide, as its wearer needs it",
                 lies * 100.0,
                 cut * 100.0
             ));
@@ -319,12 +324,16 @@ impl Block {
         let Some(opened) = seen.and_then(|seen| apart::opened(outline, seen)) else { return whole };
         let apart = Sought { is_opened: true, forms: sought.forms.clone(), ..*sought };
         let apart = self.laid(panel, &opened.outline, photo, &apart, cx);
-        let apart = apart.map(|(name, form, fitted)| (name, form, Fitted { apart: opened.what, ..fitted }));
+        let apart =
+            apart.map(|(name, form, fitted)| (name, form, Fitted { apart: opened.what.clone(), ..fitted }));
         let price = |(name, _, fitted): &(&str, &Form, Fitted)| {
             fitted.lying.score + sought.likely.map_or(0.0, |l| l.price(name))
         };
         match (whole, apart) {
-            (Ok(whole), Ok(apart)) => Ok(if price(&apart) < price(&whole) { apart } else { whole }),
+            (Ok(whole), Ok(apart)) => {
+                let is_better = price(&apart) + OPENED < price(&whole) + GROUND * opened.ground;
+                Ok(if is_better { apart } else { whole })
+            }
             (whole, apart) => whole.or(apart),
         }
     }

@@ -11,9 +11,10 @@
 use super::front::{self, Front};
 use super::sleeve::SleeveShape;
 use super::waist::{self, Waist};
+use crate::mesh::crossing::first_crossing;
 use crate::style::block::template::curve::Curve;
-use crate::style::block::template::fit::Fit;
-use crate::style::block::template::flat::{Flat, FlatEdge, PARTS, Run, Side};
+use crate::style::block::template::fit::{Fit, SEAT};
+use crate::style::block::template::flat::{Flat, FlatEdge, PARTS, Run, Side, straight};
 use crate::style::block::template::form::Form;
 use crate::style::block::template::piece_role::{Layer, PieceRole};
 use toile_core::prelude::*;
@@ -31,8 +32,6 @@ const CORNER: f64 = 0.1;
 /// Controls of an armhole, to the left of its chord, in chord lengths: it runs in below and up
 /// above.
 const ARMHOLE: [f64; 2] = [0.18, 0.08];
-/// The seat's height above the fork, as a share of the rise.
-pub(super) const SEAT: f64 = 0.35;
 /// Both points of the fork, as a share of the seat's girth.
 const FORK: f64 = 0.15;
 /// Legs are long from so many times the length of the point on.
@@ -44,6 +43,8 @@ const LEAST_DROP: f64 = 0.7;
 const STRAIGHT: f64 = 0.7;
 const HOLLOW: f64 = 0.15;
 const INNER: f64 = 0.15;
+/// How much of its bend an inseam keeps, tried one after another.
+const STRAIGHTENED: [f64; 3] = [1.0, 0.5, 0.0];
 
 /// How a garment is made up, beyond its outline.
 #[derive(Debug, Clone, Copy)]
@@ -223,19 +224,41 @@ fn leg(side: &Side, layer: Layer) -> Flat {
     let tip = Point2::new(low.x - point, foot.y + drop.max(LEAST_DROP * (low.y - foot.y)));
     // Legs that are short beside the point run straight from it.
     let share = ((foot - low).norm() / (LONG * point).max(1e-6)).min(1.0);
-    let inner = |c: &Curve| {
+    let inner = |c: &Curve, share: f64| {
         let straight = tip + (foot - tip) / 3.0;
         straight + (c.0[1] + out(INNER) - straight) * share
     };
     // Straight down, then out to the point.
     let rise = Curve([high, high + (low - high) * STRAIGHT, low + out(HOLLOW), tip]);
     let all = side.edges.iter().copied().chain([(EdgeRole::Rise, rise)]);
-    let all = all.map(|(role, c)| match role {
-        EdgeRole::Inseam => (role, Curve([tip, inner(&c), c.0[2], c.0[3]])),
-        _ => (role, c),
-    });
-    let edges: Vec<_> = all.map(|(role, c)| (role, Run::Cubic(c))).collect();
+    let edges = |kept: f64| -> Vec<(EdgeRole, Curve)> {
+        let changed = |(role, c): (EdgeRole, Curve)| match role {
+            EdgeRole::Inseam => {
+                let even = straight(tip, foot).0[2];
+                (role, Curve([tip, inner(&c, share * kept), even + (c.0[2] - even) * kept, foot]))
+            }
+            _ => (role, c),
+        };
+        all.clone().map(changed).collect()
+    };
+    // The inseam of a leg that lies bent is straightened until it meets no other edge.
+    let tried = STRAIGHTENED.map(edges);
+    // It leaves the point downwards: the rise comes in level.
+    let falls = |edges: &[(EdgeRole, Curve)]| {
+        edges.iter().all(|(role, c)| *role != EdgeRole::Inseam || c.0[1].y < tip.y)
+    };
+    let is_sound = |edges: &&Vec<(EdgeRole, Curve)>| falls(edges) && !crosses(edges);
+    let found = tried.iter().find(is_sound).unwrap_or(&tried[STRAIGHTENED.len() - 1]);
+    let edges: Vec<_> = found.iter().map(|(role, c)| (*role, Run::Cubic(*c))).collect();
     Flat::of_trunk(PieceRole::Leg(layer, side.hand), side.alone(&edges))
+}
+
+/// Whether a closed line of curves crosses itself.
+fn crosses(edges: &[(EdgeRole, Curve)]) -> bool {
+    let points: Vec<Point2> = edges.iter().flat_map(|(_, c)| c.points(PARTS).into_iter().skip(1)).collect();
+    let n = points.len() as u32;
+    let segments: Vec<[u32; 2]> = (0..n).map(|k| [k, (k + 1) % n]).collect();
+    first_crossing(&points, &segments).is_some()
 }
 
 /// How far out a curve lies at a height: where it passes it, or its end that is nearer.

@@ -18,6 +18,8 @@ use crate::style::block::template::segment::{self, Cut, belief, cut};
 use nalgebra::{DMatrix, DVector, Rotation2};
 use toile_core::artifact::{EdgeRole, Point2, Vector2};
 
+/// The seat's height above the fork, as a share of the rise.
+pub(crate) const SEAT: f64 = 0.35;
 /// Spread of an outline about its template, as a share of the garment's size.
 const SPREAD: f64 = 0.006;
 /// Distances, in spreads, beyond which points count less and less: at first, and at last.
@@ -106,7 +108,7 @@ impl Fit {
         Fit { score: self.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64, ..self }
     }
 
-    /// Around the garment where its hip is widest, as it lies; of trousers above the fork, since
+    /// Around the garment where its hip is widest, as it lies; of trousers not below the seat, since
     /// legs may flare. `None` for what has no hip.
     pub(crate) fn hip(&self, form: &Form) -> Option<f64> {
         let edges = || {
@@ -117,8 +119,10 @@ impl Fit {
         };
         edges().next()?;
         let widest = |s: &Vec<Bow>| {
+            let (fork, waist) = (s[0].a.y, s[s.len() - 1].b.y);
+            let seat = if form.has_legs() { fork + SEAT * (waist - fork) } else { f64::NEG_INFINITY };
             let points = edges().flat_map(|(k, _)| s[k].points());
-            points.filter(|p| !form.has_legs() || p.y >= s[0].a.y).map(|p| p.x).fold(0.0, f64::max)
+            points.filter(|p| p.y >= seat).map(|p| p.x).fold(0.0, f64::max)
         };
         Some(2.0 * self.sides.iter().map(widest).sum::<f64>())
     }

@@ -7,9 +7,8 @@
 //! and outseam keep their lengths to a part in a hundred. Limit: how the cloth folds at the fork of
 //! spread legs is not known.
 
-use crate::style::block::pieces::SEAT;
 use crate::style::block::template::bow::Bow;
-use crate::style::block::template::fit::Fit;
+use crate::style::block::template::fit::{Fit, SEAT};
 use crate::style::block::template::form::Form;
 use nalgebra::Rotation2;
 use toile_core::artifact::{EdgeRole, Point2};
