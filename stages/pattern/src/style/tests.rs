@@ -60,7 +60,7 @@ fn style(garment: &str) -> super::Outline {
 }
 
 fn run(garment: &str, outlines: Set<Outline>) -> Result<(Set<Outline>, SewingPlan), StageError> {
-    let (_, outlines, plan) = style(garment).run(outlines, &body(), &Context::quiet())?;
+    let (_, outlines, plan) = style(garment).run(outlines, &body(), None, &Context::quiet())?;
     Ok((outlines, plan))
 }
 
@@ -111,7 +111,7 @@ fn pieces_stand_upright_with_their_necks_at_the_bodys() {
     };
     for garment in ["vest", "tshirt"] {
         let (pattern, named, _) =
-            style(garment).run(set(garment, askew), &body(), &Context::quiet()).unwrap();
+            style(garment).run(set(garment, askew), &body(), None, &Context::quiet()).unwrap();
         for (side, before) in [("front", true), ("back", false)] {
             let pose = pattern.piece(side).unwrap().pose.unwrap();
             assert_eq!(pose.outside().z > 0.99, before);
@@ -198,7 +198,7 @@ fn sewn_edges_are_divided_alike() {
 fn a_panel_alone_is_named_and_told() {
     let cx = Context::quiet();
     let only: Set<Outline> = [("front".to_owned(), truth("vest", "front").0)].into_iter().collect();
-    let (_, named, plan) = style("vest").run(only, &body(), &cx).unwrap();
+    let (_, named, plan) = style("vest").run(only, &body(), None, &cx).unwrap();
     assert_eq!(named.get("front").unwrap().edges.len(), 8);
     assert!(plan.seams.is_empty());
     assert_eq!(
@@ -270,7 +270,7 @@ fn a_style_says_why_it_does_not_fit() {
 fn an_outline_that_is_too_small_for_the_body_is_refused() {
     let mut wide = body();
     wide.measurements.insert("bust".to_owned(), 1.3);
-    let e = style("vest").run(set("vest", |o| o), &wide, &Context::quiet()).unwrap_err();
+    let e = style("vest").run(set("vest", |o| o), &wide, None, &Context::quiet()).unwrap_err();
     assert_eq!(e.message, "the garment is too small: its chest measures 99 cm around, the body's 130 cm");
     assert_eq!(
         e.hint.as_deref(),
@@ -369,7 +369,7 @@ fn small_differences_are_eased_with_a_word() {
     // A back that is 2 % larger.
     let back = outlines.get_mut("back").unwrap();
     back.outer.points.iter_mut().for_each(|p| *p *= 1.02);
-    style("vest").run(outlines.into_iter().collect(), &body(), &cx).unwrap();
+    style("vest").run(outlines.into_iter().collect(), &body(), None, &cx).unwrap();
     assert_eq!(
         cx.take_remarks().notes[0],
         "front.shoulder_left is 100.0 mm long, back.shoulder_left 102.0 mm; the longer one is eased in by 2.0 %"
@@ -406,7 +406,7 @@ proptest! {
 /// The warnings about a T-shirt on a mannequin.
 fn warnings(body: &str) -> Vec<String> {
     let cx = Context::quiet();
-    style("tshirt").run(set("tshirt", |o| o), &mannequin(body).unwrap(), &cx).unwrap();
+    style("tshirt").run(set("tshirt", |o| o), &mannequin(body).unwrap(), None, &cx).unwrap();
     cx.take_remarks().warnings
 }
 
@@ -417,4 +417,29 @@ fn sleeves_take_the_arms_between_them() {
     let start = "the seam front.underarm_left + back.underarm_left starts with the body between ";
     let end = " % of it; arms spread like the sleeves would free it (the mannequin's `arm_angle`)";
     assert!(hanging[0].starts_with(start) && hanging[0].ends_with(end), "{hanging:?}");
+}
+
+#[test]
+fn an_outline_that_the_frame_cuts_is_refused() {
+    // The outline lies 400 px wide, and its hem on the lower side of the photo.
+    let low = |o: &Outline| o.outer.points.iter().fold(0.0, |low: f64, p| low.min(p.y));
+    let framed = |o: Outline| {
+        let origin_px = Point2::new(400.0, 600.0 + 500.0 * low(&o));
+        let frame = PhotoFrame { origin_px, px_per_metre: 500.0, mirrored: false, turn: 0.0 };
+        Outline { frame: Some(frame), ..o }
+    };
+    let photo = |high: u32| {
+        let pixels = Shared::new(image::RgbImage::new(800, high));
+        let photo = Photo { pixels, ..toile_core::testkit::shapes::photo() };
+        [("front".to_owned(), photo)].into_iter().collect::<Set<Photo>>()
+    };
+    let run =
+        |high: u32| style("vest").run(set("vest", framed), &body(), Some(photo(high)), &Context::quiet());
+    run(700).unwrap();
+    let e = run(600).unwrap_err();
+    assert_eq!(e.to_string(), "the frame cuts \"front\", and its outline would be cut as it ends there");
+    assert_eq!(
+        e.hint.unwrap(),
+        "photograph the garment with ground on all four sides; or let one half complete the other: --set 'style=Block()'"
+    );
 }

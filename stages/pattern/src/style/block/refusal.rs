@@ -64,3 +64,23 @@ pub(super) fn strays(panel: &str, form: &Form, fit: &Fit, stray: f64, auto: bool
 fn stated_hint() -> String {
     format!("{LAY}; or let it be named: --set 'style.style=Auto' --set 'body.style=Auto'")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::style::block::template::form::SKIRT;
+
+    #[test]
+    fn a_garment_that_the_network_takes_for_another_kind_is_told_with_what_can_be_said() {
+        let e = another("front", &SKIRT, "a pair of shorts", 0.973);
+        assert_eq!(
+            e.to_string(),
+            "the outline of \"front\" is that of a skirt, but the photo shows a pair of shorts, as the network sees it with a probability of 0.97"
+        );
+        let hint = e.hint.unwrap_or_default();
+        assert_eq!(
+            hint,
+            format!("{LAY}; or say what it is: --set 'style.style=Vest' --set 'body.style=Vest'")
+        );
+    }
+}

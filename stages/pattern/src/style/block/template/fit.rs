@@ -458,10 +458,9 @@ fn nearest(m: &TemplateModel, sampled: &[Vec<SampledBow>; 2], p: Point2) -> (usi
     for (side, edges) in sampled.iter().enumerate() {
         let q = m.seen(p, side);
         for (k, bow) in edges.iter().enumerate() {
-            if let Some((t, off)) = bow.nearest(q, best.3.norm()) {
-                if off.norm_squared() < best.3.norm_squared() {
-                    best = (side, k, t, off);
-                }
+            let nearer = bow.nearest(q, best.3.norm());
+            if let Some((t, off)) = nearer.filter(|(_, off)| off.norm_squared() < best.3.norm_squared()) {
+                best = (side, k, t, off);
             }
         }
     }
