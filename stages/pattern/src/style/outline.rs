@@ -146,8 +146,8 @@ impl Outline {
 fn whole(l: &Laid<'_>, outlines: &Set<Shape>, photo: &Photo) -> Result<(), StageError> {
     let Some(outline) = outlines.get(l.panel) else { return Ok(()) };
     let mut upright = l.fitted.upright.clone();
-    mark(&mut upright, outline, photo.pixels.dimensions(), l.panel)?;
-    match upright.unseen.contains(&true) {
+    let is_cut = mark(&mut upright, outline, photo.pixels.dimensions(), l.panel).is_err();
+    match is_cut || upright.unseen.contains(&true) {
         false => Ok(()),
         true => Err(StageError::invalid(format!(
             "the frame cuts \"{}\", and its outline would be cut as it ends there",

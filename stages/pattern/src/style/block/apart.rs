@@ -128,9 +128,9 @@ pub(super) fn opened(outline: &Outline, seen: &SeenGarment) -> Option<OpenedOutl
             let grid = Grid::over(&points);
             let within = grid.within(&points);
             let is_within = |p: Point2| grid.holding(p).is_some_and(|i| within[i]);
-            let is_bare = |p: Point2| !is_within(p) || probability(Part::Ground, p) > GROUND;
+            let is_ground = |p: Point2| probability(Part::Ground, p) > GROUND;
             let wedge = Wedge { open: OPEN * size, widest: WIDEST * size, beyond: BEYOND * size };
-            let Some(opened) = parted(&points, &wedge.along(&way, &is_bare)) else { continue };
+            let Some(opened) = parted(&points, &wedge.along(&way, &is_within, &is_ground)) else { continue };
             points = opened;
             what.push(words);
         }
@@ -287,8 +287,14 @@ struct Wedge {
 
 impl Wedge {
     /// Its quadrilaterals, counter-clockwise. To each side it widens over all that is bare: ground,
-    /// and what lies outside.
-    fn along(&self, way: &[Point2], is_bare: &dyn Fn(Point2) -> bool) -> Vec<[Point2; 4]> {
+    /// and what does not lie within the line.
+    fn along(
+        &self,
+        way: &[Point2],
+        is_within: &dyn Fn(Point2) -> bool,
+        is_ground: &dyn Fn(Point2) -> bool,
+    ) -> Vec<[Point2; 4]> {
+        let is_bare = |p: Point2| !is_within(p) || is_ground(p);
         let mut way = way.to_vec();
         let along = polyline_length(&way).max(f64::MIN_POSITIVE);
         if let [.., before, end] = way[..] {
@@ -297,23 +303,28 @@ impl Wedge {
             way.extend(steps.take_while(|p| is_bare(*p)));
         }
         let mut gone = 0.0;
+        // A place, the direction to its left, and how far the wedge reaches to both sides.
         let mut across = |k: usize| {
             let (p, last) = (way[k], way.len() - 1);
             gone += if k > 0 { (p - way[k - 1]).norm() } else { 0.0 };
             let d = way[(k + 1).min(last)] - way[k.saturating_sub(1)];
             let left = Rotation2::new(std::f64::consts::FRAC_PI_2) * d;
             let left = left.try_normalize(1e-12).unwrap_or_default();
-            let step = STEP * self.open;
-            let to = |side: f64| {
-                let start = self.open * (gone / along).min(1.0);
+            let (start, step) = (self.open * (gone / along).min(1.0), STEP * self.open);
+            let reach = |side: f64| {
                 let place = |k: usize| p + left * (side * (start + step * k as f64));
                 let bare = (0..(self.widest / step) as usize).take_while(|k| is_bare(place(k + 1)));
-                place(bare.count())
+                side * (start + step * bare.count() as f64)
             };
-            [to(1.0), to(-1.0)]
+            (p, left, [reach(1.0), reach(-1.0)])
         };
-        let sides: Vec<[Point2; 2]> = (0..way.len()).map(&mut across).collect();
-        let quads = sides.windows(2).map(|w| [w[0][0], w[0][1], w[1][1], w[1][0]]);
+        let places: Vec<_> = (0..way.len()).map(&mut across).collect();
+        let quads = places.windows(2).map(|w| {
+            let ((p, p_left, reach), (q, q_left, next)) = (w[0], w[1]);
+            // What is bare beyond the line tells nothing of the last stretch within it.
+            let next = if is_within(p) && !is_within(q) { reach } else { next };
+            [p + p_left * reach[0], p + p_left * reach[1], q + q_left * next[1], q + q_left * next[0]]
+        });
         quads.map(|q| if polygon_area(&q) < 0.0 { [q[3], q[2], q[1], q[0]] } else { q }).collect()
     }
 }
@@ -376,15 +387,15 @@ mod tests {
     }
 
     /// The square of 1 m without a wedge along a way that ends at its lower side.
-    fn opened(is_bare: &dyn Fn(Point2) -> bool) -> Vec<Point2> {
+    fn opened(is_ground: &dyn Fn(Point2) -> bool) -> Vec<Point2> {
         let way: Vec<Point2> = (0..=7).map(|k| Point2::new(0.5, 0.7 - 0.1 * f64::from(k))).collect();
         let wedge = Wedge { open: 0.03, widest: 0.25, beyond: 0.15 };
-        parted(&square(), &wedge.along(&way, is_bare)).unwrap()
+        parted(&square(), &wedge.along(&way, &|p| p.y > 0.0, is_ground)).unwrap()
     }
 
     #[test]
     fn a_wedge_takes_its_own_area_from_the_line_and_no_more() {
-        let opened = opened(&|p| p.y < 0.0);
+        let opened = opened(&|_| false);
         // A triangle of 6 cm by 70 cm.
         assert!((polygon_area(&opened) - (1.0 - 0.5 * 0.06 * 0.7)).abs() < 2e-3, "{}", polygon_area(&opened));
         let grid = Grid::over(&opened);
@@ -396,7 +407,7 @@ mod tests {
     #[test]
     fn a_wedge_takes_in_the_ground_beside_it_down_to_the_line() {
         // Ground lies between 0.5 and 0.6, up to the fork.
-        let opened = opened(&|p| p.y < 0.0 || (p.x > 0.5 && p.x < 0.6 && p.y < 0.7));
+        let opened = opened(&|p| p.x > 0.5 && p.x < 0.6 && p.y < 0.7);
         let ground = 0.1 * 0.7 + 0.5 * 0.03 * 0.7;
         assert!((polygon_area(&opened) - (1.0 - ground)).abs() < 1.5e-2, "{}", polygon_area(&opened));
         let least = opened.iter().filter(|p| p.x > 0.52 && p.x < 0.58).map(|p| p.y).fold(1.0, f64::min);

@@ -2,10 +2,10 @@
 //!
 //! Shorts and sweatpants lie with a waist far narrower than any wearer's; worn, the elastic gives
 //! way. The drawn-in waist is not the body's, and the cloth beneath it is not cut so
-//! narrow: it is nearly as wide as the wearer's waist at least. How much wider the cloth is cut under the
-//! elastic a photo does not show. Limits: a waist that is too narrow because the scale is wrong, of
-//! a garment whose hip fits all the same, is taken for an elastic one. A skirt may flare from a
-//! waist of its own width, so that its hip tells nothing of it: skirts are left as they lie.
+//! narrow: it is nearly as wide as the wearer's waist at least. How much wider the cloth is cut
+//! under the elastic a photo does not show. Limits: a waist that is too narrow because the scale is
+//! wrong, of a garment whose hip fits all the same, is taken for an elastic one. A skirt may flare
+//! from a waist of its own width, so that its hip tells nothing of it: skirts are left as they lie.
 //!
 //! Ribbed cuffs lie drawn in likewise, and those of short sleeves folded. Where a rib or a fold may
 //! make so much, they are cut as wide as the wearer's arm is there.

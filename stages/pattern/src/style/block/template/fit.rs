@@ -18,7 +18,8 @@ use crate::style::block::template::segment::{self, Cut, belief, cut};
 use nalgebra::{DMatrix, DVector, Rotation2};
 use toile_core::artifact::{EdgeRole, Point2, Vector2};
 
-/// The seat's height above the fork, as a share of the rise.
+/// The heights of the hip and of the seat above the fork, as shares of the rise.
+const HIP: f64 = 0.25;
 pub(crate) const SEAT: f64 = 0.35;
 /// Spread of an outline about its template, as a share of the garment's size.
 const SPREAD: f64 = 0.006;
@@ -108,7 +109,7 @@ impl Fit {
         Fit { score: self.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64, ..self }
     }
 
-    /// Around the garment where its hip is widest, as it lies; of trousers not below the seat, since
+    /// Around the garment where its hip is widest, as it lies; of trousers not near the fork, since
     /// legs may flare. `None` for what has no hip.
     pub(crate) fn hip(&self, form: &Form) -> Option<f64> {
         let edges = || {
@@ -120,9 +121,9 @@ impl Fit {
         edges().next()?;
         let widest = |s: &Vec<Bow>| {
             let (fork, waist) = (s[0].a.y, s[s.len() - 1].b.y);
-            let seat = if form.has_legs() { fork + SEAT * (waist - fork) } else { f64::NEG_INFINITY };
+            let low = if form.has_legs() { fork + HIP * (waist - fork) } else { f64::NEG_INFINITY };
             let points = edges().flat_map(|(k, _)| s[k].points());
-            points.filter(|p| p.y >= seat).map(|p| p.x).fold(0.0, f64::max)
+            points.filter(|p| p.y >= low).map(|p| p.x).fold(0.0, f64::max)
         };
         Some(2.0 * self.sides.iter().map(widest).sum::<f64>())
     }
