@@ -309,15 +309,15 @@ impl Tape {
         };
         let long = self.length.map(|(l, [usual, spread])| (l * 100.0 / height - usual) / spread);
         let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);
-        let counted = |x: f64| (x * x).min(if x < 0.0 { MOST_NARROW } else { MOST });
-        // A hem above the hip, or one that a rib draws in, may be narrower: it counts where it is.
-        let hem = self.hem.map(|hem| (hem * 100.0 / hip - 1.0).min(0.0) / EASE[HIP][1]);
-        let measured = (0..3).filter_map(girth).chain(long).chain(sleeve);
-        let all: Vec<f64> = measured.chain(hem.filter(|off| *off < 0.0)).map(counted).collect();
+        let tight = |x: f64| (x * x).min(if x < 0.0 { MOST_NARROW } else { MOST });
+        let girths = (0..3).filter_map(girth).map(tight);
+        let all: Vec<f64> = girths.chain(long.into_iter().chain(sleeve).map(|x| (x * x).min(MOST))).collect();
+        // A hem above the hip may be as wide as it likes: it counts where it is narrower.
+        let hem = self.hem.map_or(0.0, |hem| tight((hem * 100.0 / hip - 1.0).min(0.0) / EASE[HIP][1]));
         let is_too_small = |k: usize| self.girths[k].is_some_and(|g| g * 100.0 < NARROWEST * body[k]);
         let refused = if (0..3).any(is_too_small) { REFUSED } else { 0.0 };
         let height = (height - LIKELY[0]) / LIKELY[1];
-        all.iter().sum::<f64>() / all.len().max(1) as f64 + height * height + refused
+        (all.iter().sum::<f64>() + hem) / all.len().max(1) as f64 + height * height + refused
     }
 
     /// Errors: the garment is larger than any that is worn, and so is the stated width.
