@@ -16,8 +16,8 @@ const AGREE: [f64; 2] = [0.88, 0.96];
 /// The weight of the method that agrees best, beside the second best: two that agree almost exactly
 /// while all others miss a stripe are right more often than three that agree roughly.
 const FIRST: f64 = 0.7;
-/// The same of what a network sees, at a hundredth of the photo's width, and which shares nothing
-/// with the methods: masks that are right agree with it to 0.95.
+/// The same of what a network sees, at a hundredth of the photo's width, and which shares no colour
+/// with the other methods: with masks drawn by hand it agrees to 0.946 in the mean.
 const SEEN: [f64; 2] = [0.88, 0.95];
 /// Mirror images alike.
 const ALIKE: [f64; 2] = [0.65, 0.85];
