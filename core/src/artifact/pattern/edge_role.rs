@@ -36,6 +36,10 @@ pub enum EdgeRole {
     Shoulder,
     /// Around the neck.
     Neck,
+    /// Of a hood, from the neck over the head to its opening, where its halves are sewn together.
+    Crown,
+    /// Of a hood, its opening.
+    Face,
     /// Where the halves of a front are closed.
     Middle,
     /// Of a band, where it is sewn to what it holds.
@@ -63,6 +67,8 @@ impl EdgeRole {
             EdgeRole::Top => "top",
             EdgeRole::Shoulder => "shoulder",
             EdgeRole::Neck => "neck",
+            EdgeRole::Crown => "crown",
+            EdgeRole::Face => "face",
             EdgeRole::Middle => "middle",
             EdgeRole::Joint => "joint",
             EdgeRole::End => "end",

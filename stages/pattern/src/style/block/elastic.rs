@@ -7,12 +7,16 @@
 //! wrong, of a garment whose hip fits all the same, is taken for an elastic one. A skirt may flare
 //! from a waist of its own width, so that its hip tells nothing of it: skirts are left as they lie.
 //!
-//! Ribbed cuffs lie drawn in likewise, and those of short sleeves folded. Where a rib or a fold may
-//! make so much, they are cut as wide as the wearer's arm is there.
+//! Ribbed cuffs and hems of legs lie drawn in likewise, and cuffs of short sleeves folded. Where a
+//! rib or a fold may make so much, they are cut as wide as the wearer's arm or leg is there. An
+//! armhole whose sleeve hangs beside the body lies folded, and is cut as deep as the arm needs it.
 
-use super::wearable::{NARROWEST, narrower_cuff};
+use super::pieces;
+use super::wearable::{NARROWEST, narrow_ankle, narrower_cuff, narrower_hem, upper_arm};
 use crate::style::block::template::fit::Fit;
+use crate::style::block::template::flat::Side;
 use crate::style::block::template::form::Form;
+use crate::style::block::template::piece_role::Layer;
 use toile_core::prelude::*;
 
 /// A waist narrower than this share of the hip is drawn in: of bodies it is 0.7 at least, and
@@ -20,31 +24,54 @@ use toile_core::prelude::*;
 const DRAWN_IN: f64 = 0.66;
 /// A rib draws a cuff in, and a fold hides of it, to no less than this share of the arm.
 const RIB: f64 = 0.6;
-/// Around such a waist the garment is narrower than its wearer by this share, so that it holds; and
-/// around such a cuff it is wider.
-const HOLDS: f64 = 0.04;
+/// From this share of the limb on an end is wide enough as it lies.
+const FITS: f64 = 0.85;
+/// Around such a waist the garment is narrower than its wearer by this share, as an elastic is, so
+/// that it holds; a belt draws a waist in by less; and around such a cuff it is wider.
+const HOLDS: f64 = 0.15;
+const BELT: f64 = 0.03;
+/// A belt draws in a waist that is wider than the wearer's by no more than this share.
+const MOST_BELT: f64 = 0.4;
 const EASE: f64 = 0.03;
+/// Half an armhole, from the armpit straight to the shoulder point, is no shorter than this share
+/// of the upper arm's girth: an armhole is some 40 % longer than the upper arm is around (Aldrich
+/// 2008).
+const ARMHOLE: f64 = 0.68;
+/// The lowering of an armpit is found in so many steps, and is no more than this share of the
+/// side's length.
+const LOWERINGS: usize = 8;
+const LOWEST: f64 = 0.3;
 
 /// Whether a waist of that girth lies drawn in, above a hip of that girth.
 pub(super) fn is_drawn_in(form: &Form, waist: f64, hip: f64) -> bool {
     form.has_legs() && waist < DRAWN_IN * hip
 }
 
-/// Widens what lies drawn in; what it is, and its girths before and after, metres.
+/// Widens what lies drawn in or folded; what it is, and its girths before and after, metres.
 pub(super) fn all_stretched(fit: &mut Fit, form: &Form, body: &Body) -> Vec<(&'static str, [f64; 2])> {
     let waist = stretched_waist(fit, form, body).map(|girths| ("the waist", girths));
+    let armhole = stretched_armholes(fit, form, body).map(|girths| ("the narrower armhole", girths));
     let cuffs = stretched_cuffs(fit, form, body).map(|girths| ("the narrower cuff", girths));
-    waist.into_iter().chain(cuffs).collect()
+    let hems = stretched_hems(fit, form, body).map(|girths| ("the narrower leg", girths));
+    [waist, armhole, cuffs, hems].into_iter().flatten().collect()
 }
 
-/// Widens the waist of a fit that no one could wear as it lies to the body's; both girths, metres,
-/// before and after. `None` where the waist is left as it is.
+/// Cuts the waist of trousers as it is worn: what lies drawn in is widened to the wearer's, and what
+/// is wider than that is drawn in, as a belt does it; both girths, metres, before and after. `None`
+/// where the waist is left as it is.
 fn stretched_waist(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
-    let k = form.at(EdgeRole::Waist).filter(|k| *k > 0)?;
+    let k = form.at(EdgeRole::Waist).filter(|k| *k > 0 && form.has_legs())?;
     let waist = 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
     let (hip, needed) = (fit.hip(form)?, *body.measurements.get("waist")?);
-    let wide = (needed * (1.0 - HOLDS)).min(hip);
-    if !is_drawn_in(form, waist, hip) || waist >= NARROWEST * needed || waist <= 0.0 || wide <= waist {
+    let belted = needed * (1.0 - BELT);
+    let wide = if is_drawn_in(form, waist, hip) && waist < NARROWEST * needed {
+        (needed * (1.0 - HOLDS)).min(hip)
+    } else if waist > belted && waist < (1.0 + MOST_BELT) * needed {
+        belted
+    } else {
+        return None;
+    };
+    if waist <= 0.0 {
         return None;
     }
     for side in &mut fit.sides {
@@ -54,22 +81,79 @@ fn stretched_waist(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> 
     Some([waist, wide])
 }
 
+/// Shortens legs whose hems the foot does not pass through, so that they end above it; by how much,
+/// metres. `None` where they are left as they are.
+pub(super) fn shortened_legs(fit: &mut Fit, form: &Form, body: &Body) -> Option<f64> {
+    let k = form.at(EdgeRole::Hem).filter(|k| form.has_legs() && *k > 0)?;
+    let ankle = narrow_ankle(form, fit, body)?;
+    for side in &mut fit.sides {
+        side[k].a.y += ankle;
+        side[k].b.y += ankle;
+        side[k - 1].b = side[k].a;
+        side[k + 1].a = side[k].b;
+    }
+    Some(ankle)
+}
+
 /// Widens cuffs that no one could wear as they lie to the wearer's arm; girths of
 /// the narrower one, metres, before and after. `None` where they are left as they are.
 fn stretched_cuffs(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
-    let k = form.underarm()?;
+    let k = form.underarm()? + 1;
     let narrower = narrower_cuff(form, fit, body)?;
-    let wide = narrower.body * (1.0 + EASE);
-    if narrower.garment >= NARROWEST * narrower.body || narrower.garment < RIB * narrower.body {
+    stretched_ends(fit, k, narrower.garment, narrower.body)
+}
+
+/// The same of the hems of legs.
+fn stretched_hems(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
+    let narrower = narrower_hem(form, fit, body)?;
+    stretched_ends(fit, form.at(EdgeRole::Hem)?, narrower.garment, narrower.body)
+}
+
+/// Widens the ends of limbs, edges of that number of which the narrower goes around `garment`, to
+/// a limb of `body`, metres.
+fn stretched_ends(fit: &mut Fit, k: usize, garment: f64, body: f64) -> Option<[f64; 2]> {
+    let wide = body * (1.0 + EASE);
+    if k == 0 || garment >= FITS * body || garment < RIB * body {
         return None;
     }
     for side in &mut fit.sides {
-        let cuff = side[k + 1];
-        let times = 0.5 * wide / cuff.length().max(f64::MIN_POSITIVE);
+        let end = side[k];
+        let times = 0.5 * wide / end.length().max(f64::MIN_POSITIVE);
         if times > 1.0 {
-            side[k + 1].a = cuff.b + (cuff.a - cuff.b) * times;
-            side[k].b = side[k + 1].a;
+            side[k].a = end.b + (end.a - end.b) * times;
+            side[k - 1].b = side[k].a;
         }
     }
-    Some([narrower.garment, wide])
+    Some([garment, wide])
+}
+
+/// Lowers the armpits of a fit whose armholes no one could wear as they lie; girths of the narrower
+/// one, metres, before and after. `None` where they are left as they are.
+fn stretched_armholes(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
+    // Sleeves cut in one with the trunk leave it at their cuffs.
+    let k = form.armpit().or_else(|| form.at(EdgeRole::Cuff)).filter(|k| *k > 0)?;
+    let needed = ARMHOLE * upper_arm(body)?;
+    let chord = |fit: &Fit, side: usize| match form.underarm() {
+        Some(_) => pieces::armhole(&Side::of(fit, form, Layer::Front, side), form),
+        None => Some((fit.sides[side][k].b - fit.sides[side][k].a).norm()),
+    };
+    let narrower = |fit: &Fit| Some(2.0 * chord(fit, 0)?.min(chord(fit, 1)?));
+    let before = narrower(fit)?;
+    for side in 0..2 {
+        let [low, armpit] = [fit.sides[side][k - 1].a, fit.sides[side][k].a];
+        for _ in 0..LOWERINGS {
+            let lacks = needed - chord(fit, side)?;
+            let most = LOWEST * (armpit - low).norm() - (fit.sides[side][k].a - armpit).norm();
+            let by = lacks.min(most);
+            if by <= 1e-4 {
+                break;
+            }
+            let down = (low - armpit).try_normalize(1e-9)?;
+            let at = fit.sides[side][k].a + down * by;
+            fit.sides[side][k].a = at;
+            fit.sides[side][k - 1].b = at;
+        }
+    }
+    let after = narrower(fit)?;
+    (after > before + 1e-3).then_some([before, after])
 }

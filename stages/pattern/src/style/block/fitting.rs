@@ -59,13 +59,23 @@ pub(super) const SIZES: [[f64; 4]; 26] = [
 /// counts. Legs may be wide there, but a wearer whom they fit is likelier: that is their spread.
 const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.03, 0.06]];
 const HIP: usize = 2;
+const WAIST: usize = 1;
 const WIDE_HIP: f64 = 0.12;
+/// Spreads of the hip of shorts, whose legs may flare, where it is wide, and of any legs where it is
+/// narrow: what goes between the legs gives no way.
+const WIDE_SHORTS: f64 = 0.2;
+const NARROW_LEGS: f64 = 0.03;
+/// Trousers sit at the waist or lower, down to the hip: there their waist is wider.
+const LOW_WAIST: f64 = 0.15;
 /// Hips of people of one size differ by this share: trousers are worn by one whose hips are so much
 /// wider where they are cut for them.
 const HIPS: f64 = 0.05;
 /// A height that is likely, cm, and its spread: it decides where a garment fits a child and an
 /// adult.
 const LIKELY: [f64; 2] = [165.0, 60.0];
+/// A bust that is likely of an adult, cm, and the spread of larger ones: it decides between sizes
+/// where a garment tells little of its wearer.
+const LIKELY_BUST: [f64; 2] = [92.0, 30.0];
 /// Usual length of a garment from neck or waist to hem, of one-pieces from neck to fork, as a share
 /// of the body's height, and its spread.
 const TOP: [f64; 2] = [0.39, 0.05];
@@ -107,7 +117,7 @@ const SPREAD: f64 = 4.0;
 /// it was taken for. State a body of your own where you know the wearer.
 #[stage(
     role = Body,
-    version = 9,
+    version = 10,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -274,11 +284,12 @@ impl Tape {
         let hip = fit.hip(form);
         // What an elastic draws in tells nothing of who wears it.
         let waist = waist.filter(|w| !hip.is_some_and(|hip| is_drawn_in(form, *w, hip)));
-        let length = match [EdgeRole::Neck, EdgeRole::Skirt, EdgeRole::Inseam, EdgeRole::Outseam].map(at) {
-            [Some(_), Some(_), ..] => Some((high - low, DRESS)),
-            [Some(_), None, Some(_), _] => Some((high - low, TRUNK)),
-            [Some(_), None, ..] => Some((high - low, TOP)),
-            [None, _, Some(inseam), Some(outseam)] => {
+        let hangs = form.hangs_from_neck();
+        let length = match [EdgeRole::Skirt, EdgeRole::Inseam, EdgeRole::Outseam].map(at) {
+            [Some(_), ..] if hangs => Some((high - low, DRESS)),
+            [None, Some(_), _] if hangs => Some((high - low, TRUNK)),
+            [None, None, _] if hangs => Some((high - low, TOP)),
+            [_, Some(inseam), Some(outseam)] => {
                 let upper = at(EdgeRole::Hip).map_or(0.0, |k| mean(&|s| s[k].length()));
                 let [inner, outer] = [inseam, outseam].map(|k| mean(&|s| s[k].length()));
                 let outer = outer + upper;
@@ -291,8 +302,8 @@ impl Tape {
             s[k].length() + s[k + 1].length() + s[k + 1].b.x
         };
         let sleeve = at(EdgeRole::Top).filter(|_| is_long).map(|k| mean(&|s| along(s, k)));
-        let hangs = form.ends_at(EdgeRole::Neck) && at(EdgeRole::Skirt).is_none();
-        let hem = at(EdgeRole::Hem).filter(|k| hangs && *k == 0).map(|k| across(k + 1));
+        let is_top = hangs && at(EdgeRole::Skirt).is_none();
+        let hem = at(EdgeRole::Hem).filter(|k| is_top && *k == 0).map(|k| across(k + 1));
         Tape { girths: [chest, waist, hip], length, sleeve, has_legs: form.has_legs(), hem }
     }
 
@@ -301,23 +312,31 @@ impl Tape {
         let body = [bust, waist, hip];
         let girth = |k: usize| {
             let off = self.girths[k]? * 100.0 / body[k] - 1.0 - EASE[k][0];
-            Some(match (k == HIP && off > 0.0, self.has_legs) {
-                (false, _) => off / EASE[k][1],
-                (true, true) => off / WIDE_HIP,
-                (true, false) => 0.0,
+            Some(match (k, off > 0.0, self.has_legs) {
+                (HIP, true, true) if self.length.is_none() => off / WIDE_SHORTS,
+                (HIP, true, true) => off / WIDE_HIP,
+                (HIP, true, false) => 0.0,
+                (HIP, false, true) => off / NARROW_LEGS,
+                (WAIST, true, true) => off / LOW_WAIST,
+                _ => off / EASE[k][1],
             })
         };
         let long = self.length.map(|(l, [usual, spread])| (l * 100.0 / height - usual) / spread);
         let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);
         let tight = |x: f64| (x * x).min(if x < 0.0 { MOST_NARROW } else { MOST });
         let girths = (0..3).filter_map(girth).map(tight);
-        let all: Vec<f64> = girths.chain(long.into_iter().chain(sleeve).map(|x| (x * x).min(MOST))).collect();
+        // Legs that are longer than the wearer's lie on the floor.
+        let length = |x: f64| (x * x).min(if x > 0.0 && self.has_legs { MOST_NARROW } else { MOST });
+        let lengths = long.map(length).into_iter().chain(sleeve.map(|x| (x * x).min(MOST)));
+        let all: Vec<f64> = girths.chain(lengths).collect();
         // A hem above the hip may be as wide as it likes: it counts where it is narrower.
         let hem = self.hem.map_or(0.0, |hem| tight((hem * 100.0 / hip - 1.0).min(0.0) / EASE[HIP][1]));
         let is_too_small = |k: usize| self.girths[k].is_some_and(|g| g * 100.0 < NARROWEST * body[k]);
         let refused = if (0..3).any(is_too_small) { REFUSED } else { 0.0 };
         let height = (height - LIKELY[0]) / LIKELY[1];
-        (all.iter().sum::<f64>() + hem) / all.len().max(1) as f64 + height * height + refused
+        let large = ((bust - LIKELY_BUST[0]) / LIKELY_BUST[1]).max(0.0);
+        let prior = height * height + large * large;
+        (all.iter().sum::<f64>() + hem) / all.len().max(1) as f64 + prior + refused
     }
 
     /// Errors: the garment is larger than any that is worn, and so is the stated width.

@@ -1,12 +1,12 @@
 //! From the fits of both layers to a pattern, and where its pieces lie in the photos.
 
 use super::pieces::{self, Making};
-use super::{seams, stand};
+use super::{hood, seams, stand};
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::flat::Flat;
 use crate::style::block::template::form::Form;
 use crate::style::block::template::halves::Upright;
-use crate::style::block::template::piece_role::Layer;
+use crate::style::block::template::piece_role::{Layer, PieceRole};
 use nalgebra::Rotation2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ pub(super) fn pattern(
     body: &Body,
     cx: &Context,
 ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
-    let hung = if form.ends_at(EdgeRole::Neck) { Hand::Left.name("neck") } else { "waist_front".to_owned() };
+    let hung = if form.hangs_from_neck() { Hand::Left.name("neck") } else { "waist_front".to_owned() };
     for (_, fitted) in layers {
         let edges = &fitted.fit.sides[0];
         let [top, low] =
@@ -79,8 +79,11 @@ pub(super) fn pattern(
         let stand = stand::Stand::of(body, &hung, top)?;
         let lying = pieces::layer(&fitted.lying, form, making, *layer, false);
         for (flat, lying) in pieces::layer(&fitted.fit, form, making, *layer, true).into_iter().zip(lying) {
-            let pose = Some(stand.pose(flat.origin, flat.turn, *layer));
-            let piece = Piece { pose, ..flat.piece() };
+            let pose = match flat.role {
+                PieceRole::Hood(hand) => hood::pose(body, hand)?,
+                _ => stand.pose(flat.origin, flat.turn, *layer),
+            };
+            let piece = Piece { pose: Some(pose), ..flat.piece() };
             photos.insert(piece.name.clone(), fitted.frame.map(|f| Lying::of(f, fitted, &lying)));
             pieces.push(piece);
             flats.push(flat);

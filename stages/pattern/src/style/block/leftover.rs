@@ -68,10 +68,10 @@ impl Leftover {
         let cm = 100.0 * self.rise * size;
         if has_neck && self.rise > HOOD {
             return Err(StageError::invalid(format!(
-                "what stands {cm:.0} cm above the shoulders of \"{panel}\" is no neckline of {}: a hood, or a collar that stands, which are not known",
+                "what stands {cm:.0} cm above the shoulders of \"{panel}\" is no neckline of {}: a hood, or a collar that stands",
                 form.word
             ))
-            .hint("fold it back behind the garment, and take the photo again"));
+            .hint("say that it has a hood: --set 'style.style=Hooded' --set 'body.style=Hooded'; or fold what stands there back behind the garment, and take the photo again"));
         }
         if has_neck && self.rise > COLLAR {
             cx.warn(format!(

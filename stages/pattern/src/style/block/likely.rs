@@ -87,9 +87,11 @@ fn styles(kind: GarmentKind) -> &'static [BlockStyle] {
     match kind {
         GarmentKind::Tshirt => &[S::TShirt, S::GrownSleeve],
         GarmentKind::Polo => &[S::TShirt, S::GrownSleeve],
-        GarmentKind::Longsleeve | GarmentKind::Hoodie => &[S::LongSleeve],
+        GarmentKind::Longsleeve => &[S::LongSleeve],
+        // A hood may lie folded behind the neck.
+        GarmentKind::Hoodie => &[S::Hooded, S::LongSleeve],
         GarmentKind::Shirt => &[S::LongSleeve, S::TShirt],
-        GarmentKind::Jacket => &[S::LongSleeve, S::Vest],
+        GarmentKind::Jacket => &[S::LongSleeve, S::Hooded, S::Vest],
         GarmentKind::Sleeveless => &[S::Vest, S::GrownSleeve],
         // Without a waist it is cut as a long top.
         GarmentKind::Dress => &[S::Dress, S::SleevedDress, S::Vest, S::TShirt, S::LongSleeve, S::GrownSleeve],

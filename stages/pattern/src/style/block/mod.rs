@@ -5,7 +5,7 @@
 //! [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the
 //! whole outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`sleeve`]
 //! straightens long sleeves, [`waist`] gathers a skirt to a band or lays it in pleats ([`pleat`]),
-//! [`front`] cuts a front in halves, [`seams`] sews it, [`stand`] puts it around the body, if one
+//! [`front`] cuts a front in halves, [`hood`] cuts a hood, [`seams`] sews it, [`stand`] puts it around the body, if one
 //! can wear it ([`wearable`]);
 //! [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
@@ -13,6 +13,7 @@ mod apart;
 mod elastic;
 mod fitting;
 mod front;
+mod hood;
 mod lay;
 mod leftover;
 mod likely;
@@ -89,6 +90,8 @@ pub enum BlockStyle {
     TShirt,
     /// Sleeves beyond the elbow.
     LongSleeve,
+    /// Sleeves beyond the elbow, and a hood that lies above the shoulders.
+    Hooded,
     /// No sleeves, and a skirt from the waist.
     Dress,
     /// A dress with sleeves.
@@ -107,10 +110,11 @@ pub enum BlockStyle {
 
 impl BlockStyle {
     /// All that can be named, with their forms.
-    const NAMED: [(BlockStyle, &'static str, &'static Form); 10] = [
+    const NAMED: [(BlockStyle, &'static str, &'static Form); 11] = [
         (BlockStyle::Vest, "Vest", &template::form::VEST),
         (BlockStyle::TShirt, "TShirt", &template::form::TEE),
         (BlockStyle::LongSleeve, "LongSleeve", &template::form::LONG),
+        (BlockStyle::Hooded, "Hooded", &template::form::HOODED),
         (BlockStyle::Dress, "Dress", &template::form::DRESS),
         (BlockStyle::SleevedDress, "SleevedDress", &template::form::SLEEVED),
         (BlockStyle::GrownSleeve, "GrownSleeve", &template::form::GROWN),
@@ -142,7 +146,7 @@ impl BlockStyle {
 /// is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 10,
+    version = 11,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -207,9 +211,15 @@ impl Block {
         let mut before = before;
         for (what, [lies, cut]) in elastic::all_stretched(&mut before.fit, form, body) {
             cx.note(format!(
-                "{what} measures {:.0} cm around as it lies, drawn in or folded: it is cut {:.0} cm wide, as its wearer needs it",
+                "{what} measures {:.0} cm around as it lies: it is cut {:.0} cm wide, as its wearer needs it",
                 lies * 100.0,
                 cut * 100.0
+            ));
+        }
+        if let Some(by) = elastic::shortened_legs(&mut before.fit, form, body) {
+            cx.note(format!(
+                "the legs are cut {:.0} cm shorter than they lie: no foot passes through their hems",
+                by * 100.0
             ));
         }
         check_wearable(name, form, &before.fit, body, seen.as_ref().map(|s| s.photo))?;
@@ -226,12 +236,19 @@ impl Block {
                 }
                 let (.., mut behind) = found;
                 elastic::all_stretched(&mut behind.fit, form, body);
+                elastic::shortened_legs(&mut behind.fit, form, body);
                 behind
             }
         };
         cx.check()?;
         let layers = [(Layer::Front, before), (Layer::Back, behind)];
-        pattern(form, &layers, Making { waist: self.waist, front: self.front }, body, cx)
+        pattern(
+            form,
+            &layers,
+            Making { waist: self.waist, front: self.front, head: hood::head(body) },
+            body,
+            cx,
+        )
     }
 }
 

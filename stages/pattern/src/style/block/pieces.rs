@@ -9,6 +9,7 @@
 //! raglan sleeve is cut as a set-in one.
 
 use super::front::{self, Front};
+use super::hood;
 use super::sleeve::SleeveShape;
 use super::waist::{self, Waist};
 use crate::mesh::crossing::first_crossing;
@@ -34,6 +35,9 @@ const CORNER: f64 = 0.1;
 const ARMHOLE: [f64; 2] = [0.18, 0.08];
 /// Both points of the fork, as a share of the seat's girth.
 const FORK: f64 = 0.15;
+/// Legs are short where their inseam is shorter than this share of the outseam: what the fork shows
+/// beyond the seat's width is then their flare.
+const SHORT: f64 = 0.3;
 /// Legs are long from so many times the length of the point on.
 const LONG: f64 = 6.0;
 /// The point behind lies no lower than this share of the way from hem to fork.
@@ -51,6 +55,8 @@ const STRAIGHTENED: [f64; 3] = [1.0, 0.5, 0.0];
 pub(super) struct Making {
     pub waist: Waist,
     pub front: Front,
+    /// How high the top of the wearer's head lies above the throat, metres.
+    pub head: f64,
 }
 
 /// The pieces of one layer, as they are cut or as they lie in the photo.
@@ -62,7 +68,7 @@ pub(super) fn layer(fit: &Fit, form: &Form, making: Making, layer: Layer, is_cut
     if form.has_legs() {
         return sides.iter().map(|s| leg(s, layer)).collect();
     }
-    let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form, is_cut)).collect();
+    let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form, layer, is_cut)).collect();
     let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
     let trunk = match (layer, making.front) {
         (Layer::Front, Front::Halves) => {
@@ -76,7 +82,9 @@ pub(super) fn layer(fit: &Fit, form: &Form, making: Making, layer: Layer, is_cut
             }]
         }
     };
-    trunk.into_iter().chain(sleeves).collect()
+    let has_hood = form.ends_at(EdgeRole::Crown) && layer == Layer::Front;
+    let hood = sides.iter().filter(|_| has_hood).map(|s| hood::half(s, making.head, is_cut));
+    trunk.into_iter().chain(sleeves).chain(hood).collect()
 }
 
 /// Front or back from side to side.
@@ -85,7 +93,9 @@ fn trunk(sides: &[Side; 2], cut: &[Cutting], form: &Form, layer: Layer) -> Flat 
     let both = |k: usize| [0, 1].map(|s: usize| sides[s].laid(sides[s].edges[k].1));
     let [right_top, left_top] = both(last);
     let mut edges = sides[0].own(&cut[0].trunk);
-    edges.push(FlatEdge::only(form.edges[last].role, Run::Chain(vec![right_top, left_top])));
+    if !form.ends_at(EdgeRole::Crown) {
+        edges.push(FlatEdge::only(form.edges[last].role, Run::Chain(vec![right_top, left_top])));
+    }
     edges.extend(sides[1].own(&cut[1].trunk));
     if !form.begins_at_fork() {
         let [right_hem, left_hem] = both(first);
@@ -101,7 +111,7 @@ struct Cutting {
 }
 
 impl Cutting {
-    fn of(side: &Side, form: &Form, is_cut: bool) -> Self {
+    fn of(side: &Side, form: &Form, layer: Layer, is_cut: bool) -> Self {
         let last = form.edges.len() - 1;
         // A hem from side to side belongs to both halves.
         let first = usize::from(!form.begins_at_fork());
@@ -114,6 +124,9 @@ impl Cutting {
         let armhole = arched(armpit, shoulder[0].0[0]);
         let mut trunk: Vec<_> = (first..k).map(run).collect();
         trunk.extend([(EdgeRole::Armhole, Run::Cubic(armhole)), (EdgeRole::Shoulder, Run::of(shoulder))]);
+        if form.ends_at(EdgeRole::Crown) {
+            trunk.push((EdgeRole::Neck, Run::Cubic(hood::neckline(side, layer))));
+        }
         let shape = if is_cut { shape.straightened() } else { Some(shape) };
         let sleeve = shape.and_then(|shape| {
             let [armpit, point] = shape.ends()?;
@@ -140,6 +153,12 @@ fn lying_sleeve(side: &Side, form: &Form, k: usize) -> (SleeveShape, Vec<Curve>)
 /// The sleeve of a side as it is cut; none of a form without set-in sleeves.
 pub(super) fn cut_sleeve(side: &Side, form: &Form) -> Option<SleeveShape> {
     lying_sleeve(side, form, form.underarm()?).0.straightened()
+}
+
+/// From the armpit straight to the shoulder point, metres; none of a form without set-in sleeves.
+pub(super) fn armhole(side: &Side, form: &Form) -> Option<f64> {
+    let [armpit, shoulder] = lying_sleeve(side, form, form.underarm()?).0.ends()?;
+    Some((shoulder - armpit).norm())
 }
 
 /// The upper border from cuff to neck, parted at the shoulder point.
@@ -211,7 +230,11 @@ fn leg(side: &Side, layer: Layer) -> Flat {
         all.first().map_or(0.0, |c| at_height(c, y))
     };
     let (seat, fork) = (width(SEAT) - low.x, width(0.0) - low.x);
-    let hidden = (FORK * 4.0 * seat - 2.0 * (fork - seat).max(0.0)).max(0.0);
+    let inner = side.edges[0].1.length();
+    let outer = |role| side.edge(role).map_or(0.0, |c: Curve| c.length());
+    let are_short = inner < SHORT * (outer(EdgeRole::Outseam) + outer(EdgeRole::Hip));
+    let shown = if are_short { 0.0 } else { 2.0 * (fork - seat).max(0.0) };
+    let hidden = (FORK * 4.0 * seat - shown).max(0.0);
     let point = match layer {
         Layer::Front => hidden / 3.0,
         Layer::Back => hidden * (2.0 / 3.0),

@@ -1,5 +1,6 @@
 //! What of a block is sewn to what.
 
+use super::hood;
 use crate::style::block::template::flat::{Flat, PleatLine};
 use crate::style::block::template::form::Form;
 use crate::style::block::template::piece_role::{Layer, PieceRole};
@@ -48,6 +49,9 @@ pub(super) fn seams(pieces: &[Flat], form: &Form, fold: PleatFold) -> Vec<Patter
         found.push(PatternSeam { kind: SeamKind::Gathered, ..gathers });
     }
     found.extend(pieces.iter().flat_map(|p| pleats(p, fold)));
+    if form.ends_at(EdgeRole::Crown) {
+        found.extend(hood::seams(pieces));
+    }
     if form.has_legs() {
         found.extend(Layer::BOTH.map(rise));
     }
@@ -68,9 +72,13 @@ fn set_in(pieces: &[Flat], trunk: PieceRole, sleeve: PieceRole, hand: Hand) -> P
         let edges = pieces.iter().filter(|p| p.role == piece).flat_map(|p| &p.edges);
         edges.filter(|e| (e.role, e.hand) == (role, hand)).map(|e| e.run.length()).sum::<f64>()
     };
-    let differ = (length(cap) / length(armhole).max(f64::MIN_POSITIVE) - 1.0).abs();
-    let kind = if differ > EASED { SeamKind::Gathered } else { SeamKind::Matched };
-    PatternSeam { kind, ..seam(EdgeRole::Armhole.word(), armhole, cap) }
+    PatternSeam { kind: kind(length(cap), length(armhole)), ..seam(EdgeRole::Armhole.word(), armhole, cap) }
+}
+
+/// How edges of these lengths are sewn together.
+pub(super) fn kind(one: f64, other: f64) -> SeamKind {
+    let differ = (one / other.max(f64::MIN_POSITIVE) - 1.0).abs();
+    if differ > EASED { SeamKind::Gathered } else { SeamKind::Matched }
 }
 
 /// The pleats of a piece: of each, one line is laid on the other.

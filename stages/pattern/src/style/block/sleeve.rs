@@ -4,7 +4,7 @@
 //! straight. Its fold along the top, between front and back, is a straight line, and the cuff
 //! stands upright on it. It is as wide at the armpit as it is widest below, since what lies folded
 //! there is no narrower, and its cap is as long as the armhole: of a set-in sleeve the cap is a
-//! quarter to two thirds as high as the armhole is long (Aldrich 2008). It is as long as it lies
+//! quarter to three fifths as high as the armhole is long (Aldrich 2008). It is as long as it lies
 //! along its middle. Limits: a sleeve of two pieces, which is cut bent, is straightened.
 
 use crate::style::block::template::curve::Curve;
@@ -13,8 +13,10 @@ use nalgebra::Rotation2;
 use std::f64::consts::FRAC_PI_2;
 use toile_core::artifact::{Point2, Vector2};
 
-/// Width at the armpit, as a share of the armhole's chord: a cap of two thirds, and of a quarter.
-const WIDE: [f64; 2] = [0.75, 0.97];
+/// Width at the armpit, as a share of the armhole's chord: a cap of three fifths, and of a quarter.
+const WIDE: [f64; 2] = [0.8, 0.97];
+/// A short sleeve that is narrower at the armpit hangs beside the body, and lies folded there.
+const LEAST_SHORT: f64 = 0.65;
 
 /// A sleeve's curves, from the armpit counter-clockwise up to the shoulder point; its cap closes
 /// it.
@@ -31,12 +33,12 @@ impl SleeveShape {
     }
 
     /// The sleeve straightened, as it stands off with its cap along the armhole; a short one as it
-    /// lies. None where it has no length.
+    /// lies, where it stands off. None where it has no length.
     pub(super) fn straightened(self) -> Option<Self> {
         let [armpit, shoulder] = self.ends()?;
         let cap = (shoulder - armpit).norm();
         let lengths = [self.underarm.length(), self.top.iter().map(Curve::length).sum()];
-        if lengths[0] < cap {
+        if lengths[0] < cap && self.widest() >= LEAST_SHORT * cap {
             return Some(self);
         }
         let cuff = self.cuff.length();

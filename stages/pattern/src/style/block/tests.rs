@@ -72,6 +72,7 @@ fn body() -> Body {
         ("neck_left", [0.07, 1.4, 0.0]),
         ("shoulder_left", [0.18, 1.35, 0.0]),
         ("waist_front", [0.0, 1.0, 0.1]),
+        ("neck_base_front", [0.0, 1.36, 0.08]),
     ];
     Body {
         positions: vec![
@@ -253,7 +254,12 @@ fn a_hood_is_refused_and_a_collar_that_stands_is_told() {
         e.message.contains("above the shoulders of \"front\" is no neckline of a T-shirt: a hood"),
         "{e}"
     );
-    assert_eq!(e.hint.as_deref(), Some("fold it back behind the garment, and take the photo again"));
+    assert_eq!(
+        e.hint.as_deref(),
+        Some(
+            "say that it has a hood: --set 'style.style=Hooded' --set 'body.style=Hooded'; or fold what stands there back behind the garment, and take the photo again"
+        )
+    );
 }
 
 #[test]

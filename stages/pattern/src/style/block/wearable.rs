@@ -3,6 +3,7 @@
 //! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at
 //! its armpits, its waist and hip, and its cuffs; what a closure would open is not known.
 
+use crate::style::block::template::bow::Bow;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
 use toile_body::convex_hull;
@@ -12,11 +13,19 @@ use toile_core::prelude::*;
 /// may lie, metres.
 const SLICE: f64 = 0.012;
 const REACH: f64 = 0.08;
+/// A leg is measured no lower than at this share of the fork's height.
+const ANKLE: f64 = 0.12;
+/// Around heel and instep a foot measures so many times as much as the ankle.
+const HEEL: f64 = 1.4;
 /// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
 const UPPERMOST: f64 = 0.5;
 
 /// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
 pub(super) const NARROWEST: f64 = 0.8;
+/// A cuff whose underarm seam is shorter than this share of the upper arm goes around the armhole
+/// in part, and is wider by this share at most.
+const NEAR: f64 = 0.4;
+const OBLIQUE: f64 = 0.3;
 /// Under these names a body that was chosen for a garment keeps what that measures.
 pub(super) const KEPT: [&str; 3] = ["garment_chest", "garment_waist", "garment_hip"];
 
@@ -104,8 +113,56 @@ pub(super) fn narrower_cuff(form: &Form, fit: &Fit, body: &Body) -> Option<Girth
         below if below < 0.8 * fore => ("the forearm", elbow, wrist, below / fore),
         _ => ("the wrist", elbow, wrist, 1.0),
     };
-    let around = arm_girth(body, from, to, share)?;
+    let underarm = narrower[cuff - 1].length();
+    let beside = 1.0 + OBLIQUE * (1.0 - underarm / (NEAR * upper).max(f64::MIN_POSITIVE)).max(0.0);
+    let around = arm_girth(body, from, to, share)? * beside;
     Some(Girth { what: "narrower cuff", garment: 2.0 * narrower[cuff].length(), of_body, body: around })
+}
+
+/// The narrower hem of two legs beside the leg where it ends: as far below the waist as the outseam
+/// is long.
+pub(super) fn narrower_hem(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
+    let hem = form.at(EdgeRole::Hem).filter(|k| form.has_legs() && *k > 0)?;
+    let narrower = fit.sides.iter().min_by(|a, b| a[hem].length().total_cmp(&b[hem].length()))?;
+    let around = leg_girth(body, end_of_leg(form, narrower, body)?)?;
+    Some(Girth {
+        what: "narrower leg",
+        garment: 2.0 * narrower[hem].length(),
+        of_body: "the leg",
+        body: around,
+    })
+}
+
+/// The height at which a leg ends whose waist is at the body's.
+fn end_of_leg(form: &Form, side: &[Bow], body: &Body) -> Option<f64> {
+    let outer = |role| form.at(role).map_or(0.0, |k: usize| side[k].length());
+    Some(body.landmarks.get("waist_front")?.y - outer(EdgeRole::Outseam) - outer(EdgeRole::Hip))
+}
+
+/// How far the hems of two legs lie below the ankles, where they are too narrow for the foot,
+/// metres.
+pub(super) fn narrow_ankle(form: &Form, fit: &Fit, body: &Body) -> Option<f64> {
+    let hem = form.at(EdgeRole::Hem)?;
+    let narrower = fit.sides.iter().min_by(|a, b| a[hem].length().total_cmp(&b[hem].length()))?;
+    let ankle = ANKLE * body.landmarks.get("crotch")?.y;
+    let below = ankle - end_of_leg(form, narrower, body)?;
+    let passes = 2.0 * narrower[hem].length() > HEEL * leg_girth(body, ankle)?;
+    (below > 0.0 && !passes).then_some(below)
+}
+
+/// The girth of the left leg at a height below the fork and above the foot.
+fn leg_girth(body: &Body, y: f64) -> Option<f64> {
+    let crotch = body.landmarks.get("crotch")?;
+    let y = y.clamp(ANKLE * crotch.y, crotch.y - 2.0 * SLICE);
+    let outermost = 0.55 * body.measurements.get("thigh").copied().unwrap_or(f64::INFINITY);
+    let is_of_leg = |p: &&Point3| (p.y - y).abs() < SLICE && p.x > 0.0 && p.x < outermost;
+    hull_girth(body.positions.iter().filter(is_of_leg).map(|p| Point2::new(p.x, p.z)).collect())
+}
+
+/// The girth of the upper arm half way down.
+pub(super) fn upper_arm(body: &Body) -> Option<f64> {
+    let mark = |name: &str| body.landmark(name, Hand::Left);
+    arm_girth(body, mark("shoulder")?, mark("elbow")?, UPPERMOST)
 }
 
 /// The girth of an arm at a share of the way between two of its landmarks.
@@ -119,7 +176,12 @@ fn arm_girth(body: &Body, from: Point3, to: Point3, share: f64) -> Option<f64> {
         let flat = Point2::new(d.dot(&across), d.dot(&front));
         (d.dot(&axis).abs() < SLICE && flat.coords.norm() < REACH).then_some(flat)
     };
-    let hull = convex_hull(body.positions.iter().filter_map(near).collect());
+    hull_girth(body.positions.iter().filter_map(near).collect())
+}
+
+/// Around places of a slice.
+fn hull_girth(slice: Vec<Point2>) -> Option<f64> {
+    let hull = convex_hull(slice);
     let n = hull.len();
     (n > 2).then(|| (0..n).map(|i| (hull[(i + 1) % n] - hull[i]).norm()).sum())
 }

@@ -152,6 +152,25 @@ pub(crate) const LONG: Form = Form {
     ],
 };
 
+/// Sleeves that end below the elbow, and a hood.
+pub(crate) const HOODED: Form = Form {
+    word: "a top with a hood",
+    marks: &[
+        Mark::Dent(2, 25.0, NO_ARMPIT),
+        Mark::Below(2, 65.0, NO_ARMPIT),
+        Mark::Dent(6, 15.0, "it has no hood above its shoulders"),
+    ],
+    edges: &[
+        HEM,
+        SIDE,
+        own(EdgeRole::Underarm, [-40.0, 35.0], [0.0, 0.08], [0.45, 1.6]),
+        own(EdgeRole::Cuff, [50.0, 35.0], [0.0, 0.06], [0.06, 0.35]),
+        edge(EdgeRole::Top, [135.0, 25.0], [0.0, 0.08], [0.5, 1.8]),
+        SHOULDER,
+        edge(EdgeRole::Crown, [115.0, 15.0], [-0.3, 0.12], [0.2, 0.8]),
+    ],
+};
+
 /// Sleeves cut in one with front and back, without an armpit: batwing, and cap sleeves so short
 /// that the outline hardly shows them.
 pub(crate) const GROWN: Form = Form {
@@ -249,9 +268,14 @@ impl Form {
         self.edges.first().is_some_and(|e| e.role == EdgeRole::Inseam)
     }
 
-    /// Whether its last edge is that one: it hangs from the neck, or from the waist.
+    /// Whether its last edge is that one.
     pub(crate) fn ends_at(&self, role: EdgeRole) -> bool {
         self.edges.last().is_some_and(|e| e.role == role)
+    }
+
+    /// Whether it hangs from the neck, and not from the waist.
+    pub(crate) fn hangs_from_neck(&self) -> bool {
+        self.ends_at(EdgeRole::Neck) || self.ends_at(EdgeRole::Crown)
     }
 
     /// The number of an edge.

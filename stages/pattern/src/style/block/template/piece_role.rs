@@ -42,6 +42,8 @@ pub(crate) enum PieceRole {
     Half(Layer, Hand),
     Sleeve(Layer, Hand),
     Leg(Layer, Hand),
+    /// Half of a hood, which the photo of the front shows.
+    Hood(Hand),
     /// The waistband of a layer.
     Band(Layer),
 }
@@ -54,6 +56,7 @@ impl PieceRole {
             PieceRole::Half(layer, hand) => format!("{hand}_{}", layer.word()),
             PieceRole::Sleeve(layer, hand) => format!("{hand}_sleeve_{}", layer.word()),
             PieceRole::Leg(layer, hand) => format!("{hand}_leg_{}", layer.word()),
+            PieceRole::Hood(hand) => format!("{hand}_hood_{}", Layer::Front.word()),
             PieceRole::Band(layer) => format!("band_{}", layer.word()),
         }
     }
@@ -77,6 +80,7 @@ impl PieceRole {
         match self {
             PieceRole::Sleeve(..) => BodyPart::Arm,
             PieceRole::Leg(..) => BodyPart::Leg,
+            PieceRole::Hood(_) => BodyPart::Head,
             PieceRole::Whole(_) | PieceRole::Half(..) | PieceRole::Band(_) => BodyPart::Body,
         }
     }

@@ -162,9 +162,11 @@ impl SeenCorners {
             true => at(Landmark::Fork)?.y,
             false => at(Landmark::HemRight)?.y,
         };
-        let last = match form.ends_at(EdgeRole::Neck) {
-            true => at(Landmark::NeckFront)?.y,
-            false => at(Landmark::WaistRight)?.y,
+        let last = match form.edges.last()?.role {
+            EdgeRole::Neck => at(Landmark::NeckFront)?.y,
+            // The top of a hood has no name.
+            EdgeRole::Crown => return None,
+            _ => at(Landmark::WaistRight)?.y,
         };
         let mut from = Point2::new(0.0, first);
         let mut edges = Vec::with_capacity(form.edges.len());

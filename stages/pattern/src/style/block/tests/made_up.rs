@@ -1,4 +1,4 @@
-//! Gathers, pleats, and fronts in two halves.
+//! Gathers, pleats, hoods, and fronts in two halves.
 
 use super::*;
 use crate::style::block::front::Front;
@@ -122,4 +122,71 @@ fn what_has_no_front_is_not_cut_in_halves() {
     let e = cut(&skirt, garment(SKIRT)).unwrap_err();
     assert_eq!(e.message, "only a top or a dress is cut in halves in front, and this is a skirt");
     assert_eq!(e.hint.unwrap(), "take `front` out");
+}
+
+const HOODY: &[[f64; 2]] = &[
+    [0.0, 0.0],
+    [265.0, 0.0],
+    [250.0, 420.0],
+    [455.0, 20.0],
+    [545.0, 65.0],
+    [235.0, 640.0],
+    [105.0, 680.0],
+    [135.0, 800.0],
+    [125.0, 900.0],
+    [85.0, 960.0],
+    [0.0, 985.0],
+];
+
+#[test]
+fn a_hood_is_two_halves_sewn_along_the_crown_and_to_the_neck() {
+    let (pattern, outlines, plan) = cut(&of(BlockStyle::Hooded), garment(HOODY)).unwrap();
+    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names.len(), 8);
+    for hood in ["left_hood_front", "right_hood_front"] {
+        let high = length(&pattern, hood, "face");
+        // 24 cm from the throat to the top of the head, and 22 % of ease: it lies higher.
+        assert!((high - 240.0 * 1.22).abs() < 1.0, "{high}");
+        let side = hood.split('_').next().unwrap();
+        let neck = |layer: &str| length(&pattern, layer, &format!("neck_{side}"));
+        let around = neck("front") + neck("back");
+        assert!((length(&pattern, hood, "joint") - around).abs() < 1.0, "{around}");
+        assert!(length(&pattern, hood, "crown") > 1.4 * high);
+    }
+    let named = |name: &str| plan.seams.iter().filter(|s| s.name().starts_with(name)).count();
+    assert_eq!(
+        [named("crown"), named("neck of left_hood_front"), named("neck of right_hood_front")],
+        [1, 2, 2]
+    );
+    // Its opening lies in the middle of the photo, and stands before the throat.
+    let o = outlines.get("left_hood_front").unwrap();
+    assert!(!o.lies.is_empty());
+    let left = pattern.piece("left_hood_front").unwrap();
+    let face = left.path("face").unwrap();
+    let middle = left.pose.unwrap().at(face.at(0.5 * face.length()));
+    assert!(middle.z > 0.08 && middle.x > 0.0 && middle.y > 1.4, "{middle}");
+    assert!(left.pose.unwrap().outside().x > 0.99);
+    assert!(pattern.piece("right_hood_front").unwrap().pose.unwrap().outside().x < -0.99);
+}
+
+#[test]
+fn a_hood_is_as_high_as_the_head_needs_it() {
+    let mut low = HOODY.to_vec();
+    for p in low.iter_mut().filter(|p| p[1] > 700.0) {
+        p[1] = 700.0 + 0.45 * (p[1] - 700.0);
+    }
+    let (pattern, ..) = cut(&of(BlockStyle::Hooded), garment(&low)).unwrap();
+    // 24 cm from the throat to the top of the head, and 10 % of ease.
+    let high = length(&pattern, "left_hood_front", "face");
+    assert!((high - 240.0 * 1.1).abs() < 1.0, "{high}");
+}
+
+#[test]
+fn a_hood_needs_a_throat() {
+    let front = [("front".to_owned(), outline(garment(HOODY)))].into_iter().collect();
+    let mut body = body();
+    body.landmarks.remove("neck_base_front");
+    let e = of(BlockStyle::Hooded).run(front, &body, None, &Context::quiet()).unwrap_err();
+    assert_eq!(e.message, "the body has no landmark \"neck_base_front\", at which a hood begins");
+    assert_eq!(e.hint.as_deref(), Some("take a Mannequin"));
 }
