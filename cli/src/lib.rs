@@ -195,7 +195,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Stage { name, cache_dir, json } => cards::show(&name, cache_dir, json, registry, streams),
         Command::Explain(args) => explain::command::explain(&args, registry, streams),
         Command::Why(args) => why::why(&args, registry, streams),
-        Command::Verify(args) => verify::verify(&args, streams),
+        Command::Verify(args) => verify::verify(&args, registry, streams),
         Command::Cache(args) => cache::cache(&args, streams),
         Command::Lock(args) => lock::lock(&args, registry, streams),
         Command::Migrate(args) => migrate::run(&args, registry, streams),

@@ -57,3 +57,42 @@ fn a_file_that_cannot_be_read_ends_with_exit_code_3_and_a_remedy() {
     assert_eq!(verify(dir.path(), &["none.obj", "--unit", "-1 m"]).0, 2);
     assert!(std::fs::read_dir(dir.path()).unwrap().next().is_none(), "nothing is written");
 }
+
+#[test]
+fn a_pattern_drafted_to_measure_is_read_with_its_measurements() {
+    let dir = tempfile::tempdir().unwrap();
+    for file in ["skirt.sm2d", "body.smis"] {
+        std::fs::copy(root().join("pipelines/samples/pattern").join(file), dir.path().join(file)).unwrap();
+    }
+    std::fs::write(dir.path().join("sound.obj"), SOUND).unwrap();
+    let judged =
+        |set: &str| verify(dir.path(), &["sound.obj", "--pattern", "skirt.sm2d", "--json", "--set", set]);
+    let (code, out, err) = judged("pattern.measurements=\"body.smis\"");
+    assert_eq!((code, err.as_str()), (0, ""), "{out}");
+    let certificate: Value = serde_json::from_str(&out).unwrap();
+    let roles: Vec<&str> =
+        certificate["inputs"].as_array().unwrap().iter().map(|i| i["role"].as_str().unwrap()).collect();
+    assert_eq!(roles, ["pattern", "measurements", "garment"]);
+    let (code, out, _) = judged("pattern.measurement=\"body.smis\"");
+    assert_eq!(code, 3);
+    let refused: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(refused["faults"][0]["message"], "`SeamlyPattern` has no parameter `measurement`");
+    assert_eq!(refused["faults"][0]["hint"], "did you mean `pattern.measurements`?");
+}
+
+#[test]
+fn a_fabric_that_there_is_none_of_is_refused_with_the_one_that_was_meant() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("sound.obj"), SOUND).unwrap();
+    let (code, _, err) = verify(dir.path(), &["sound.obj", "--fabric", "denimm"]);
+    assert_eq!(code, 3);
+    assert!(
+        err.starts_with("error: there is no fabric preset \"denimm\"\n  help: did you mean \"denim\"? "),
+        "{err}"
+    );
+    let (code, out, _) =
+        verify(dir.path(), &["sound.obj", "--fabric", "Kes(weight: 12.0)", "--friction", "0.4"]);
+    assert_eq!(code, 0, "{out}");
+    assert!(out.contains("not judged  rest_shift: "), "{out}");
+    assert_eq!(verify(dir.path(), &["sound.obj", "--friction", "0.4"]).0, 2);
+}

@@ -2,6 +2,7 @@
 
 use crate::compare::GarmentDifference;
 use crate::judge::{FigureCheck, Judgement, Verdict, coordinates};
+use crate::rest::RestFigures;
 use crate::seams::SeamGap;
 use crate::strain::PanelStrain;
 use serde::Serialize;
@@ -9,11 +10,7 @@ use std::collections::BTreeMap;
 use toile_core::artifact::{Digest, GirthFigures, Point3};
 
 /// The version of the schema.
-const VERSION: u32 = 1;
-
-/// Why it is not judged whether the garment is at rest.
-const REST: &str =
-    "not judged: forces need the fabric and the friction, which the files of a garment do not contain";
+const VERSION: u32 = 2;
 
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -53,7 +50,8 @@ pub struct Certificate {
     girths: BTreeMap<String, GirthFigures>,
     #[serde(skip_serializing_if = "Option::is_none")]
     girths_not_judged: Option<String>,
-    rest: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rest: Option<RestFigures>,
     #[serde(skip_serializing_if = "Option::is_none")]
     compared: Option<Compared>,
     notes: Vec<String>,
@@ -92,7 +90,7 @@ impl Certificate {
             unmeasured_seams: found.gaps.unmeasured.into_iter().collect(),
             girths: found.girths,
             girths_not_judged: found.no_girths,
-            rest: REST,
+            rest: found.rest,
             compared,
             notes,
         }
@@ -120,7 +118,6 @@ impl Certificate {
         for (name, why) in &self.unmeasured_seams {
             lines.push(format!("not judged  seam \"{name}\": {why}"));
         }
-        lines.push(format!("not judged  rest: {}", REST.trim_start_matches("not judged: ")));
         if let Some(compared) = &self.compared {
             lines.extend(compared.words());
         }

@@ -2,47 +2,75 @@
 //!
 //! Of a run's folder `garment.glb` is read (else the first GLB, else `result.obj`, else the first
 //! OBJ), its body, and the flat pieces of `origin.json`. Of any other file the panels are its
-//! texture islands where all of it has texture points, else groups, else materials, else parts; its
-//! texture counts as the flat shape where it is that in some scale (with a pattern) or in some unit
-//! (without).
+//! texture islands where all of it has texture points, else those of GarmentCode's segmentation
+//! beside it, else groups, else materials, else parts; its texture counts as the flat shape where
+//! it is that in some scale (with a pattern) or in some unit (without).
 
 mod cut;
+mod fault;
 mod flat;
+mod segmentation;
+mod stages;
+mod up;
+
+pub use segmentation::Segmentation;
+pub use stages::reader_words;
+pub use toile_body::Up;
 
 use crate::certificate::{Certificate, Compared, InputFile};
 use crate::compare::compare;
 use crate::judge::judge;
 use crate::limits::CheckLimits;
-use crate::subject::{Subject, WearerBody};
+use crate::subject::{KnownCloth, Subject, WearerBody};
+use fault::unreadable;
+use stages::{made, one};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toile_body::{HUMAN_HEIGHTS, body_of_mesh};
-use toile_core::artifact::{Body, Pattern, Point3};
-use toile_core::prelude::{Context, ErrorCode, StageError};
+use toile_core::artifact::{Body, Collider, Fabric, Pattern, Point3};
+use toile_core::prelude::{Context, Stage, StageError};
 use toile_geometry::obj;
 use toile_output::flat::{FileMeshes, file_meshes};
 use toile_output::write::origin::{FILE, FlatPieces};
-use toile_pattern::pattern::{DxfPattern, GarmentCode, SeamlyPattern, SvgPattern};
 
 /// The files' names that a run's folder is searched for first.
 const FIRST: [&str; 2] = ["garment.glb", "result.obj"];
+
+/// Why rest is not judged where no fabric is named.
+const NO_CLOTH: &str = "forces need the fabric, which no file of a garment tells: name it with `--fabric`";
 
 /// What is requested.
 #[derive(Debug, Clone, Default)]
 pub struct AskedFiles {
     /// A garment's file, or the folder of a run.
     pub garment: PathBuf,
-    /// A pattern: GarmentCode's JSON, DXF or SVG.
+    /// The file of a pattern.
     pub pattern: Option<PathBuf>,
-    /// The seams of a DXF or SVG pattern, where a file of their own holds them.
+    /// The seams of a pattern, where a file of their own holds them.
     pub seams: Option<PathBuf>,
+    /// The stage that reads the pattern, such as [`reader_words`] names one.
+    pub reader: Option<Arc<dyn Stage>>,
+    /// What the garment is made of and what it lies on, where its rest is to be judged.
+    pub cloth: Option<ClothStages>,
     /// A body; that of the garment's file where none is named.
     pub body: Option<PathBuf>,
     /// A second garment of the same pattern, or the folder of its run.
     pub compare: Option<PathBuf>,
     /// What a number of the garment's file is in metres; guessed where it is not given.
     pub unit: Option<f64>,
+    /// Which axis of the files is up; found where it is not given.
+    pub up: Option<Up>,
     /// The limits.
     pub limits: CheckLimits,
+}
+
+/// The stages that say what a garment is made of and what it lies on.
+#[derive(Debug, Clone)]
+pub struct ClothStages {
+    /// Its fabric.
+    pub fabric: Arc<dyn Stage>,
+    /// Makes of the body what cloth lies on: its friction and how far it holds cloth off.
+    pub collider: Arc<dyn Stage>,
 }
 
 /// The certificate of what is requested, and the folder of the garment.
@@ -51,16 +79,16 @@ pub struct AskedFiles {
 /// A file that cannot be read, with its place and a remedy.
 pub fn certify(asked: &AskedFiles) -> Result<(Certificate, PathBuf), StageError> {
     let mut reader = FileReader::default();
-    let pattern = asked.pattern.as_deref().map(|p| reader.pattern(p, asked.seams.as_deref())).transpose()?;
-    let body = asked.body.as_deref().map(|p| reader.body(p)).transpose()?;
+    let pattern = asked.reader.as_deref().map(|stage| reader.pattern(stage, asked)).transpose()?;
+    let body = asked.body.as_deref().map(|p| reader.body(p, asked.up)).transpose()?;
     let file = garment_file(&asked.garment)?;
-    let subject = reader.subject("garment", &file, asked.unit, pattern.as_ref(), body.as_ref())?;
+    let subject = reader.subject("garment", &file, asked, pattern.as_deref(), body.as_ref())?;
     let found = judge(&subject, &asked.limits);
     let compared = match &asked.compare {
         None => None,
         Some(other) => {
             let other = garment_file(other)?;
-            let other = reader.subject("compared", &other, asked.unit, pattern.as_ref(), body.as_ref())?;
+            let other = reader.subject("compared", &other, asked, pattern.as_deref(), body.as_ref())?;
             let difference = compare(&subject.garment, &other.garment);
             Some(Compared::new(judge(&other, &asked.limits), difference))
         }
@@ -92,10 +120,6 @@ fn garment_file(path: &Path) -> Result<PathBuf, StageError> {
     })
 }
 
-fn unreadable(what: String) -> StageError {
-    StageError::new(ErrorCode::PatternLoading, what)
-}
-
 /// Reads files, and keeps note of them.
 #[derive(Debug, Default)]
 struct FileReader {
@@ -113,63 +137,107 @@ impl FileReader {
         Ok(bytes)
     }
 
-    fn pattern(&mut self, path: &Path, seams: Option<&Path>) -> Result<Pattern, StageError> {
-        self.bytes("pattern", path)?;
-        if let Some(seams) = seams {
-            self.bytes("seams", seams)?;
-        }
-        let seams = seams.map(|s| s.display().to_string()).unwrap_or_default();
-        let file = path.display().to_string();
-        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    /// The pattern, by its stage; the files that it reads are noted by what they are.
+    fn pattern(&mut self, stage: &dyn Stage, asked: &AskedFiles) -> Result<Arc<Pattern>, StageError> {
         let cx = Context::quiet();
-        let pattern = match extension.as_deref() {
-            Some("json") => GarmentCode { file }.run(&cx)?.0,
-            Some("dxf") => DxfPattern { file, seams, ..DxfPattern::default() }.run(&cx)?.0,
-            Some("svg") => SvgPattern { file, seams, ..SvgPattern::default() }.run(&cx)?.0,
-            Some("sm2d" | "val") => SeamlyPattern { file, seams, ..SeamlyPattern::default() }.run(&cx)?.0,
-            _ => {
-                let what = format!("\"{file}\" is not a pattern by its name");
-                return Err(unreadable(what)
-                    .hint("name a pattern of GarmentCode (.json), a .dxf, .svg, .sm2d or .val file"));
-            }
-        };
+        let pattern = made::<Pattern>(stage, Vec::new(), &cx)?;
+        let is = |path: &str, named: &Option<PathBuf>| named.as_deref() == Some(Path::new(path));
+        // A file that was looked for and is not there has no digest.
+        let read = cx.take_reads().into_iter().filter(|(_, digest)| digest.is_some());
+        for (k, (path, _)) in read.enumerate() {
+            let role = match () {
+                () if is(&path, &asked.pattern) || k == 0 => "pattern",
+                () if is(&path, &asked.seams) => "seams",
+                () => "measurements",
+            };
+            self.bytes(role, Path::new(&path))?;
+        }
         let told = cx.take_remarks();
         self.notes.extend(told.warnings.into_iter().chain(told.notes));
         Ok(pattern)
     }
 
-    fn body(&mut self, path: &Path) -> Result<WearerBody, StageError> {
+    /// A body, and which axis of its file is up.
+    fn body(&mut self, path: &Path, up: Option<Up>) -> Result<(WearerBody, Up), StageError> {
         let bytes = self.bytes("body", path)?;
         let file = path.display().to_string();
         let is_glb = bytes.starts_with(b"glTF");
         let meshes = file_meshes(&bytes, &file, Some(1.0))?;
         let triangles = if meshes.body.is_empty() { meshes.triangles } else { meshes.body };
         let mut positions = meshes.positions;
+        let up = up.unwrap_or_else(|| match is_glb {
+            true => Up::Y,
+            false => up::of_body(&positions, &triangles),
+        });
+        up::turn(up, &mut positions);
         if !is_glb {
             let unit = body_unit(&positions, &triangles, &file)?;
             positions.iter_mut().for_each(|p| *p *= unit);
         }
-        Ok(wearer(&positions, &triangles))
+        Ok((wearer(&positions, &triangles), up))
     }
 
     fn subject(
         &mut self,
         role: &'static str,
         path: &Path,
-        unit: Option<f64>,
+        asked: &AskedFiles,
         pattern: Option<&Pattern>,
-        body: Option<&WearerBody>,
+        body: Option<&(WearerBody, Up)>,
     ) -> Result<Subject, StageError> {
         let bytes = self.bytes(role, path)?;
-        let meshes = file_meshes(&bytes, &path.display().to_string(), unit)?;
-        self.notes.extend(meshes.notes.iter().cloned());
+        let mut meshes = file_meshes(&bytes, &path.display().to_string(), asked.unit)?;
+        self.notes.append(&mut meshes.notes);
+        let up = asked.up.or(body.map(|b| b.1)).unwrap_or_else(|| self.up(&meshes, &bytes, path));
+        up::turn(up, &mut meshes.positions);
         let pieces = self.pieces(path)?;
+        let labels = self.labels(path)?;
         let body = match body {
-            Some(wearer) => Ok(wearer.clone()),
+            Some((wearer, _)) => Ok(wearer.clone()),
             None if meshes.body.is_empty() => Err("no body is known: name one with `--body`".to_owned()),
             None => Ok(wearer(&meshes.positions, &meshes.body)),
         };
-        Ok(subject(&meshes, pieces.as_ref(), pattern, body))
+        let mut subject = subject(&meshes, pieces.as_ref(), labels.as_ref(), pattern, body);
+        if let Some(stages) = &asked.cloth {
+            subject.cloth = self.cloth(stages, &subject.body)?;
+        }
+        Ok(subject)
+    }
+
+    /// What the garment is made of and lies on; why that is not known.
+    fn cloth(
+        &mut self,
+        stages: &ClothStages,
+        body: &Result<WearerBody, String>,
+    ) -> Result<Result<KnownCloth, String>, StageError> {
+        let cx = Context::quiet();
+        let fabric = made::<Fabric>(stages.fabric.as_ref(), Vec::new(), &cx)?;
+        let wearer = match body {
+            Ok(WearerBody { closed: Err(why), .. }) | Err(why) => return Ok(Err(why.clone())),
+            Ok(wearer) => wearer,
+        };
+        let collider = made::<Collider>(stages.collider.as_ref(), vec![one(wearer.body.clone())], &cx)?;
+        let told = cx.take_remarks();
+        self.notes.extend(told.warnings.into_iter().chain(told.notes));
+        Ok(Ok(KnownCloth { fabric, collider: collider.as_ref().clone() }))
+    }
+
+    /// The axis that is up in a garment's file: z where its openings face forwards otherwise.
+    fn up(&mut self, meshes: &FileMeshes, bytes: &[u8], path: &Path) -> Up {
+        if bytes.starts_with(b"glTF") || !meshes.lies {
+            return Up::Y;
+        }
+        let file = path.display();
+        self.notes.push(format!("\"{file}\": its z axis is taken as up; `--up y` says otherwise"));
+        Up::Z
+    }
+
+    /// The panels' names beside a garment's file.
+    fn labels(&mut self, garment: &Path) -> Result<Option<(String, Segmentation)>, StageError> {
+        let Some(path) = segmentation::beside(garment) else { return Ok(None) };
+        let bytes = self.bytes("segmentation", &path)?;
+        let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok(Some((name, Segmentation::of(&String::from_utf8_lossy(&bytes)))))
     }
 
     /// The flat pieces beside a garment's file.
@@ -192,14 +260,20 @@ impl FileReader {
 pub fn subject(
     meshes: &FileMeshes,
     pieces: Option<&FlatPieces>,
+    labels: Option<&(String, Segmentation)>,
     pattern: Option<&Pattern>,
     body: Result<WearerBody, String>,
 ) -> Subject {
     let mut faults = Vec::new();
+    let (lines, vertices) = (labels.map_or(0, |l| l.1.0.len()), meshes.positions.len());
+    let fitting = labels.filter(|_| lines == vertices).map(|l| &l.1);
+    if let (Some((file, _)), None) = (labels, fitting) {
+        faults.push(format!("\"{file}\" has {lines} lines for {vertices} vertices"));
+    }
     let of_pieces = pieces.and_then(|p| flat::garment_of_pieces(meshes, p).map_err(|e| faults.push(e)).ok());
     let (garment, flat) = match of_pieces {
         Some(garment) => (garment, Ok(())),
-        None => cut::garment(meshes, pattern),
+        None => cut::garment(meshes, fitting, pattern),
     };
     let seams = match (pieces, garment.seams.is_empty()) {
         (_, false) => Ok(()),
@@ -208,7 +282,8 @@ pub fn subject(
         )),
         (None, true) => Err("no pattern was given: name one with `--pattern`".to_owned()),
     };
-    Subject { garment, flat, seams, pattern: pattern.cloned(), body, faults }
+    let cloth = Err(NO_CLOTH.to_owned());
+    Subject { garment, flat, seams, pattern: pattern.cloned(), body, cloth, faults }
 }
 
 /// Metres of the unit in which a body is as tall as a person.

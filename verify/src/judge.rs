@@ -2,6 +2,7 @@
 
 use crate::laid::{ByPiece, Laid};
 use crate::limits::CheckLimits;
+use crate::rest::{RestFigures, rest};
 use crate::seams::Gaps;
 use crate::strain::{PanelStrain, Strain, strain};
 use crate::subject::{Subject, WearerBody, finished};
@@ -64,6 +65,8 @@ pub struct Judgement {
     pub girths: BTreeMap<String, GirthFigures>,
     /// Why there are no girths.
     pub no_girths: Option<String>,
+    /// What it does when it is let go; none where that is not judged.
+    pub rest: Option<RestFigures>,
     /// Vertices of the garment, each panel counted for itself.
     pub vertices: usize,
     /// Triangles of the garment.
@@ -123,6 +126,7 @@ pub fn judge(subject: &Subject, limits: &CheckLimits) -> Judgement {
     gaps(subject, &garment, laid.as_deref(), limits, &mut found);
     strains(subject, &garment, collider.as_ref(), limits, &mut found);
     ease(subject, &garment, &mut found);
+    at_rest(subject, &garment, limits, &mut found);
     found
 }
 
@@ -328,6 +332,25 @@ fn ease(subject: &Subject, garment: &Garment, found: &mut Judgement) {
     match known {
         Ok(body) => found.girths = girths(garment, body),
         Err(why) => found.no_girths = Some(why.to_owned()),
+    }
+}
+
+fn at_rest(subject: &Subject, garment: &Garment, limits: &CheckLimits, found: &mut Judgement) {
+    let none = [("rest_moving", "1", limits.moving), ("rest_shift", "m", limits.shift)];
+    let known = subject
+        .flat
+        .as_ref()
+        .map_err(Clone::clone)
+        .and_then(|()| subject.cloth.as_ref().map_err(Clone::clone));
+    let figures = known.and_then(|cloth| rest(garment, cloth).map_err(|e| e.message));
+    match figures {
+        Err(why) => found.skip(&none, &why),
+        Ok(figures) => {
+            found.judge("rest_moving", figures.moving, "1", limits.moving, String::new());
+            let words = format!("farthest in {}", vertex_words(garment, figures.worst as u32));
+            found.judge("rest_shift", figures.moved_m, "m", limits.shift, words);
+            found.rest = Some(figures);
+        }
     }
 }
 

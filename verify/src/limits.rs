@@ -20,6 +20,10 @@ pub struct CheckLimits {
     pub strain_max: f64,
     /// Greatest depth of a vertex in the body, metres.
     pub depth: f64,
+    /// The greatest share of the vertices that get faster than 5 mm/s when the garment is let go.
+    pub moving: f64,
+    /// The farthest that the garment moves when it is let go, but for a share of its vertices, metres.
+    pub shift: f64,
 }
 
 impl Default for CheckLimits {
@@ -33,6 +37,8 @@ impl Default for CheckLimits {
             tight: 0.25,
             strain_max: 1.0,
             depth: 1e-4,
+            moving: crate::released::NON_STATIC,
+            shift: 5e-3,
         }
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::sync::Arc;
 use toile_core::artifact::{
-    Body, Curve, Fabric, Garment, GarmentPanel, Pattern, Point2, Point3, SolveStatus, join_pairs,
+    Body, Collider, Curve, Fabric, Garment, GarmentPanel, Pattern, Point2, Point3, SolveStatus, join_pairs,
 };
 
 /// Vertices that a seam joins are one within this, metres.
@@ -24,6 +24,8 @@ pub struct Subject {
     pub pattern: Option<Pattern>,
     /// The body.
     pub body: Result<WearerBody, String>,
+    /// What it is made of and lies on.
+    pub cloth: Result<KnownCloth, String>,
     /// What is wrong between the files, a sentence each: each is a failure.
     pub faults: Vec<String>,
 }
@@ -37,6 +39,15 @@ pub struct WearerBody {
     pub closed: Result<(), String>,
     /// Whether it has landmarks and girths.
     pub measured: Result<(), String>,
+}
+
+/// What a garment is made of, and what it lies on.
+#[derive(Debug, Clone)]
+pub struct KnownCloth {
+    /// Its fabric.
+    pub fabric: Arc<Fabric>,
+    /// Its body, with friction.
+    pub collider: Collider,
 }
 
 /// One panel's triangles in a file.

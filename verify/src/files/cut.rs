@@ -1,5 +1,6 @@
 //! A garment from the mesh of a file alone: its panels, and its texture as their flat shape.
 
+use super::segmentation::Segmentation;
 use crate::subject::{PanelTriangles, garment_of};
 use std::collections::{BTreeMap, HashMap};
 use toile_core::artifact::{Garment, Pattern, Point2, Point3, polygon_area};
@@ -14,9 +15,13 @@ const UNITS: [f64; 5] = [1.0, 0.1, 0.01, 0.001, 0.0254];
 const LIKE: f64 = 0.1;
 
 /// The garment, and whether its flat shape is known.
-pub(super) fn garment(meshes: &FileMeshes, pattern: Option<&Pattern>) -> (Garment, Result<(), String>) {
-    let (of, count) = panels(meshes);
-    let names = names(meshes, &of, count);
+pub(super) fn garment(
+    meshes: &FileMeshes,
+    labels: Option<&Segmentation>,
+    pattern: Option<&Pattern>,
+) -> (Garment, Result<(), String>) {
+    let (of, count) = panels(meshes, labels);
+    let names = names(meshes, labels, &of, count);
     let scale = scale(meshes, pattern, count);
     let mut cuts: Vec<PanelTriangles> = names
         .into_iter()
@@ -33,11 +38,14 @@ pub(super) fn garment(meshes: &FileMeshes, pattern: Option<&Pattern>) -> (Garmen
 }
 
 /// For each triangle its panel, and how many there are.
-fn panels(meshes: &FileMeshes) -> (Vec<u32>, usize) {
+fn panels(meshes: &FileMeshes, labels: Option<&Segmentation>) -> (Vec<u32>, usize) {
     let several = |of: &[u32]| of.windows(2).any(|w| w[0] != w[1]);
     let textured = !meshes.is_ours && meshes.texture.iter().all(Option::is_some);
     if textured {
         return islands(meshes);
+    }
+    if let Some(labels) = labels {
+        return labelled(meshes, labels);
     }
     if several(&meshes.groups) || several(&meshes.materials) {
         let of = if several(&meshes.groups) { &meshes.groups } else { &meshes.materials };
@@ -70,6 +78,38 @@ fn islands(meshes: &FileMeshes) -> (Vec<u32>, usize) {
     groups(meshes.triangles.len(), pairs.into_iter())
 }
 
+/// Panels by the names of vertices; a triangle of which all are sewn belongs to the neighbour that
+/// is found first.
+fn labelled(meshes: &FileMeshes, labels: &Segmentation) -> (Vec<u32>, usize) {
+    let mut number: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut of: Vec<Option<u32>> = Vec::with_capacity(meshes.triangles.len());
+    for t in &meshes.triangles {
+        let next = number.len() as u32;
+        of.push(labels.name(t).map(|name| *number.entry(name).or_insert(next)));
+    }
+    let pairs = sides(meshes, |t, k| {
+        let (a, b) = (meshes.triangles[t][k], meshes.triangles[t][(k + 1) % 3]);
+        [a.min(b), a.max(b), 0, 0, 0, 0].map(u64::from)
+    });
+    loop {
+        let before = of.clone();
+        for [a, b] in &pairs {
+            for (one, other) in [(*a as usize, *b as usize), (*b as usize, *a as usize)] {
+                if of[one].is_none() {
+                    of[one] = before[other];
+                }
+            }
+        }
+        if of == before {
+            break;
+        }
+    }
+    // What no name reaches is a panel of its own.
+    let rest = number.len() as u32;
+    let bare = of.iter().any(Option::is_none);
+    (of.into_iter().map(|k| k.unwrap_or(rest)).collect(), number.len() + usize::from(bare))
+}
+
 /// Vertices by the first at their place.
 fn point_of(positions: &[Point3]) -> Vec<u32> {
     let mut first: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len());
@@ -87,8 +127,15 @@ fn sides(meshes: &FileMeshes, key: impl Fn(usize, usize) -> [u64; 6]) -> Vec<[u3
     keyed.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| [w[0].1, w[1].1]).collect()
 }
 
-/// Names by the group of a panel's first triangle, else its material, else by number; each once.
-fn names(meshes: &FileMeshes, of: &[u32], count: usize) -> Vec<String> {
+/// Names by the labels of a panel's vertices, else by the group of its first triangle, else its
+/// material, else by number; each once.
+fn names(meshes: &FileMeshes, labels: Option<&Segmentation>, of: &[u32], count: usize) -> Vec<String> {
+    let mut own: Vec<Vec<usize>> = vec![Vec::new(); count];
+    of.iter().enumerate().for_each(|(t, panel)| own[*panel as usize].push(t));
+    let label = |k: usize| {
+        let triangles = own[k].iter().map(|t| &meshes.triangles[*t]);
+        labels.and_then(|l| l.most(triangles)).map(str::to_owned)
+    };
     let mut first: Vec<Option<usize>> = vec![None; count];
     for (t, panel) in of.iter().enumerate() {
         first[*panel as usize].get_or_insert(t);
@@ -104,7 +151,7 @@ fn names(meshes: &FileMeshes, of: &[u32], count: usize) -> Vec<String> {
     };
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let named = |(k, t): (usize, Option<usize>)| {
-        let name = t.and_then(called).unwrap_or_else(|| format!("piece_{}", k + 1));
+        let name = label(k).or_else(|| t.and_then(called)).unwrap_or_else(|| format!("piece_{}", k + 1));
         let times = seen.entry(name.clone()).or_insert(0);
         *times += 1;
         if *times == 1 { name } else { format!("{name}_{times}") }

@@ -3,7 +3,9 @@
 
 mod damages;
 mod reading;
+mod rest;
 mod same;
+mod schema;
 mod truths;
 
 use crate::files::{subject, wearer};
@@ -72,7 +74,7 @@ impl Skirt {
     }
 
     fn subject(&self, pattern: Option<&Pattern>, body: Result<WearerBody, String>) -> Subject {
-        subject(&self.meshes, None, pattern, body)
+        subject(&self.meshes, None, None, pattern, body)
     }
 
     fn judged(&self) -> Judgement {

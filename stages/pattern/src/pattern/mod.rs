@@ -6,6 +6,7 @@ mod dxf;
 mod faults;
 mod follow;
 mod garment_code;
+mod letters;
 mod marks;
 mod outfit;
 mod propose;

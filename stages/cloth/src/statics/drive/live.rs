@@ -8,7 +8,7 @@
 //! Since friction and folds have a history, the equilibrium may differ from that of a fresh start.
 
 use crate::mesh::Sheet;
-use crate::scene::Scene;
+use crate::scene::{Held, Scene};
 use crate::statics::drive::held::hold_as;
 use crate::statics::drive::solve::{Equilibrium, LevelReport, Progress, StaticEquilibrium, StaticsError};
 use crate::statics::factor::multifrontal::Halt;
@@ -52,9 +52,32 @@ impl<'a> Live<'a> {
         collider: Option<Collider<'a>>,
         state: &Equilibrium,
     ) -> Result<Self, StaticsError> {
+        Self::at(settings, scene, collider, &state.positions, &state.held())
+    }
+
+    /// Starts where `scene` stands, with the history of friction that it has.
+    ///
+    /// # Errors
+    /// [`StaticsError`], where the scene is at fault.
+    pub fn here(
+        settings: StaticEquilibrium,
+        scene: Scene,
+        collider: Option<Collider<'a>>,
+    ) -> Result<Self, StaticsError> {
+        let (positions, held) = (scene.positions.clone(), scene.held.clone());
+        Self::at(settings, scene, collider, &positions, &held)
+    }
+
+    fn at(
+        settings: StaticEquilibrium,
+        scene: Scene,
+        collider: Option<Collider<'a>>,
+        positions: &[Vec3],
+        held: &Held,
+    ) -> Result<Self, StaticsError> {
         scene.check()?;
         scene.check_still()?;
-        if state.positions.len() != scene.rest.len() {
+        if positions.len() != scene.rest.len() {
             return Err(StaticsError::Reshaped);
         }
         let pieces = Pieces::new(&scene);
@@ -62,8 +85,8 @@ impl<'a> Live<'a> {
         let mut system = assemble(&scene, collider, &pieces, &sheet, false, settings.models)?;
         system.set_seam_forces(kept_seam_forces(&scene, &pieces, settings.join_gap));
         let even = vec![1.0; scene.rest.len()];
-        let x = pieces.sew(&state.positions, &even);
-        hold_as(&state.held(), &mut system, &pieces, &x);
+        let x = pieces.sew(positions, &even);
+        hold_as(held, &mut system, &pieces, &x);
         let layout = pieces.sew(&scene.positions, &even);
         let tree = scene.self_collision.then(|| ClothTree::new(sheet.triangles(), &layout));
         let newton = NewtonState::new(&mut system, &layout, tree, &x, FIRST);

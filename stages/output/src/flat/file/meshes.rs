@@ -7,6 +7,7 @@
 use super::chosen::cloth_of_ours;
 use super::closed::{Whole, wholes};
 use super::raw::{NO_POINT, RawMesh};
+use super::upright::lies;
 use super::{read_glb, read_obj};
 use crate::render::parts::BODY;
 use std::ops::RangeInclusive;
@@ -46,6 +47,8 @@ pub struct FileMeshes {
     pub body: Vec<[u32; 3]>,
     /// Whether this program wrote the file.
     pub is_ours: bool,
+    /// Whether the cloth seems to lie, as where the file has another axis up than y.
+    pub lies: bool,
     /// What was decided on the way, a sentence each.
     pub notes: Vec<String>,
 }
@@ -70,6 +73,7 @@ pub fn file_meshes(bytes: &[u8], file: &str, unit: Option<f64>) -> Result<FileMe
         true => own_body(&mut raw, file, &mut notes),
         false => closed_parts(&mut raw, &mut notes),
     };
+    let lies = !raw.is_ours && lies(&raw);
     let corner = |c: &[u32; 3]| (!c.contains(&NO_POINT)).then(|| c.map(|i| raw.uv[i as usize]));
     Ok(FileMeshes {
         texture: raw.corners.iter().map(corner).collect(),
@@ -81,6 +85,7 @@ pub fn file_meshes(bytes: &[u8], file: &str, unit: Option<f64>) -> Result<FileMe
         material_names: raw.material_names,
         body,
         is_ours: raw.is_ours,
+        lies,
         notes,
     })
 }

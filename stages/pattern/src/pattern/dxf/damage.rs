@@ -1,6 +1,7 @@
 //! What may be wrong with a DXF file beyond repair.
 
 use super::super::faults::PatternFault;
+use super::super::letters::LettersFault;
 use thiserror::Error;
 use toile_core::ErrorCode;
 
@@ -9,6 +10,8 @@ use toile_core::ErrorCode;
 pub(super) enum DxfDamage {
     #[error("it is a binary DXF")]
     Binary,
+    #[error(transparent)]
+    Letters(LettersFault),
     #[error("it has {bytes} bytes, {most} are the most")]
     Large { bytes: usize, most: usize },
     #[error("\"{value}\" at line {line} is no group code")]
@@ -47,6 +50,7 @@ impl DxfDamage {
     /// What the user may do about it.
     pub(super) fn remedy(&self) -> String {
         match self {
+            DxfDamage::Letters(fault) => fault.remedy(),
             DxfDamage::Binary => "export it as ASCII DXF, release 12".into(),
             DxfDamage::Large { .. } | DxfDamage::Many { .. } => {
                 "export fewer pieces or sizes at a time".into()
@@ -69,10 +73,14 @@ impl DxfDamage {
 
     /// As a fault of the file.
     pub(super) fn fault(&self) -> PatternFault {
-        let param = if matches!(self, DxfDamage::NoSize { .. }) { "size" } else { "file" };
+        let param = match self {
+            DxfDamage::NoSize { .. } => "size",
+            DxfDamage::Letters(_) => "encoding",
+            _ => "file",
+        };
         let code = match self {
             DxfDamage::Crosses { .. } => ErrorCode::DegenerateTriangles,
-            DxfDamage::NoSize { .. } => ErrorCode::InvalidParameter,
+            DxfDamage::NoSize { .. } | DxfDamage::Letters(_) => ErrorCode::InvalidParameter,
             DxfDamage::Binary
             | DxfDamage::Large { .. }
             | DxfDamage::Code { .. }

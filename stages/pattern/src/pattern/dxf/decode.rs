@@ -5,7 +5,8 @@
 //! code page has one byte per letter, and where none is named. What is neither is read as
 //! Windows-1252, with a warning.
 
-use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
+use super::super::letters::encoding;
+use encoding_rs::{Encoding, WINDOWS_1252};
 use toile_core::Remarks;
 
 /// The first release in UTF-8.
@@ -21,7 +22,7 @@ pub(super) fn text(bytes: &[u8], told: &mut Remarks) -> String {
     let utf8 = std::str::from_utf8(bytes).ok();
     let (version, page) = (header(bytes, "$ACADVER"), header(bytes, "$DWGCODEPAGE"));
     let unicode = version.is_some_and(|v| v.as_str() >= UNICODE);
-    let named = page.as_deref().and_then(code_page);
+    let named = page.as_deref().and_then(encoding);
     let one_byte = named.is_none_or(Encoding::is_single_byte);
     if let Some(text) = utf8.filter(|_| unicode || one_byte) {
         return text.strip_prefix('\u{feff}').unwrap_or(text).to_owned();
@@ -53,25 +54,6 @@ fn header(bytes: &[u8], variable: &str) -> Option<String> {
     lines.nth(1).map(|value| String::from_utf8_lossy(value).into_owned())
 }
 
-/// The encoding of a code page by the names that programs give it: `ANSI_936`, `dos932`, `GB2312`.
-pub(super) fn code_page(name: &str) -> Option<&'static Encoding> {
-    let small = name.trim().to_ascii_lowercase();
-    let digits: String = small.chars().filter(char::is_ascii_digit).collect();
-    let label = match digits.as_str() {
-        _ if small.contains("iso") || small.contains("8859") => small.replace('_', "-"),
-        "932" => "shift_jis".into(),
-        "936" | "2312" | "18030" => "gb18030".into(),
-        "949" | "5601" => "euc-kr".into(),
-        "950" => "big5".into(),
-        "874" => "windows-874".into(),
-        "866" => "ibm866".into(),
-        "65001" => "utf-8".into(),
-        page if page.starts_with("125") => format!("windows-{page}"),
-        _ => small,
-    };
-    Encoding::for_label(label.as_bytes()).filter(|e| *e != UTF_8 || label.contains("utf"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,8 +79,8 @@ mod tests {
             ("DOS866", "Перед"),
             ("gb2312", "后片"),
         ] {
-            let encoding = code_page(page).unwrap_or(WINDOWS_1252);
-            let (bytes, _, wrong) = encoding.encode(name);
+            let page_of = encoding(page).unwrap_or(WINDOWS_1252);
+            let (bytes, _, wrong) = page_of.encode(name);
             assert!(!wrong, "{page}");
             let mut told = Remarks::default();
             let read = text(&file("AC1009", page, &bytes), &mut told);

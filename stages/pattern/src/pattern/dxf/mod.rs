@@ -45,7 +45,7 @@ const MOST_TOLD: usize = 6;
 #[stage(
     role = Reader,
     source = "AAMA DXF; ASTM D6673",
-    version = 3,
+    version = 4,
     example = "DxfPattern(file: \"tank.dxf\", size: \"M\")",
     contracts(Deterministic, ThreadInvariant)
 )]
@@ -59,6 +59,10 @@ pub struct DxfPattern {
     /// The unit of the file's numbers.
     #[param(default = DrawingUnit::Auto)]
     pub unit: DrawingUnit,
+    /// The encoding of names, such as `windows-1251` or `shift_jis`; empty for the one that the file
+    /// says.
+    #[param(default = String::new())]
+    pub encoding: String,
     /// The file with the seams, relative to the pipeline; empty where they are to be proposed.
     #[param(default = String::new())]
     pub seams: String,
@@ -73,7 +77,7 @@ impl DxfPattern {
         let mut told = Remarks::default();
         let refused =
             |all: Vec<DxfDamage>| faults::refused(&self.file, all.iter().map(DxfDamage::fault).collect());
-        let pieces = pieces_of(&bytes, &self.size, self.unit, &mut told).map_err(refused)?;
+        let pieces = pieces_of(&bytes, self, &mut told).map_err(refused)?;
         let unsewable = |what: String, remedy: &str| {
             refused(vec![DxfDamage::Unsewable { what, remedy: remedy.to_owned() }])
         };
@@ -128,14 +132,10 @@ fn drawn<'a>(blocks: &'a [Block], asked: &str) -> Vec<Drawn<'a>> {
 /// The pieces of one size, each as often as it is cut.
 ///
 /// Errors: all that is wrong with them.
-fn pieces_of(
-    bytes: &[u8],
-    size: &str,
-    unit: DrawingUnit,
-    told: &mut Remarks,
-) -> Result<Vec<Piece>, Vec<DxfDamage>> {
+fn pieces_of(bytes: &[u8], asked: &DxfPattern, told: &mut Remarks) -> Result<Vec<Piece>, Vec<DxfDamage>> {
+    let DxfPattern { size, unit, encoding, .. } = asked;
     let one = |damage| vec![damage];
-    let tags = tags::tags(bytes, told).map_err(one)?;
+    let tags = tags::tags(bytes, encoding, told).map_err(one)?;
     let (blocks, outside) = blocks(&tags).map_err(one)?;
     let drawn = drawn(&blocks, size);
     if drawn.is_empty() {
@@ -145,7 +145,7 @@ fn pieces_of(
     let is_chosen = |d: &&Drawn<'_>| d.size.is_empty() || d.size.eq_ignore_ascii_case(&size);
     let chosen: Vec<&Drawn<'_>> = drawn.iter().filter(is_chosen).collect();
     other_sizes_alone(&drawn, &chosen, &size, told);
-    let taken = units::unit(&tags, &outside, &chosen, unit, told).map_err(one)?;
+    let taken = units::unit(&tags, &outside, &chosen, *unit, told).map_err(one)?;
     let (mut out, mut faults): (Vec<Piece>, Vec<DxfDamage>) = (Vec::new(), Vec::new());
     let mut count: BTreeMap<&str, usize> = BTreeMap::new();
     for Drawn { block, name: own, .. } in &chosen {

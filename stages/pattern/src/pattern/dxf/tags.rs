@@ -3,6 +3,7 @@
 //! Cost: linear. Limits: text form alone (the binary form is refused by name); 32 MB.
 //! [`super::decode`] finds the letters.
 
+use super::super::letters::decoded;
 use super::damage::DxfDamage;
 use super::{decode, words};
 use toile_core::Remarks;
@@ -26,15 +27,18 @@ impl Tag {
     }
 }
 
-/// The pairs of a file.
-pub(super) fn tags(bytes: &[u8], told: &mut Remarks) -> Result<Vec<Tag>, DxfDamage> {
+/// The pairs of a file, whose letters are in `encoding`, or as the file says where that is empty.
+pub(super) fn tags(bytes: &[u8], encoding: &str, told: &mut Remarks) -> Result<Vec<Tag>, DxfDamage> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
         return Err(DxfDamage::Binary);
     }
     if bytes.len() > MOST_BYTES {
         return Err(DxfDamage::Large { bytes: bytes.len(), most: MOST_BYTES });
     }
-    let text = decode::text(bytes, told);
+    let text = match encoding.trim() {
+        "" => decode::text(bytes, told),
+        named => decoded(bytes, named).map_err(DxfDamage::Letters)?,
+    };
     let mut lines = text.lines().enumerate();
     let mut out = Vec::new();
     while let Some((i, code)) = lines.next() {

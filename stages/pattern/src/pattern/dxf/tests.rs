@@ -96,16 +96,20 @@ fn tank() -> Dxf {
 
 /// The pieces and the remarks on them, warnings first; of several faults the first. The unit is not
 /// looked at.
+fn asked(size: &str, unit: DrawingUnit) -> DxfPattern {
+    DxfPattern { size: size.into(), unit, ..DxfPattern::default() }
+}
+
 fn read(bytes: &[u8], size: &str) -> Result<(Vec<Piece>, Vec<String>), DxfDamage> {
     let mut told = Remarks::default();
-    let pieces = pieces_of(bytes, size, DrawingUnit::Millimetres, &mut told);
+    let pieces = pieces_of(bytes, &asked(size, DrawingUnit::Millimetres), &mut told);
     pieces.map(|p| (p, [told.warnings, told.notes].concat())).map_err(|mut all| all.remove(0))
 }
 
 /// The same in the unit that the file says.
 fn in_own_unit(bytes: &[u8]) -> Result<(Vec<Piece>, Remarks), DxfDamage> {
     let mut told = Remarks::default();
-    let pieces = pieces_of(bytes, "", DrawingUnit::Auto, &mut told);
+    let pieces = pieces_of(bytes, &asked("", DrawingUnit::Auto), &mut told);
     pieces.map(|p| (p, told)).map_err(|mut all| all.remove(0))
 }
 
@@ -177,7 +181,7 @@ fn units_and_sizes_that_are_not_given_are_found_and_told() {
             "`--set pattern.unit=Centimetres` makes it 60 cm long, `--set pattern.unit=Inches` makes it 152 cm long; where it is meant to be of that size, `--set pattern.unit=Millimetres` says so".to_owned()
         )
     );
-    let asked = pieces_of(&metric, "", DrawingUnit::Centimetres, &mut Remarks::default()).unwrap();
+    let asked = pieces_of(&metric, &asked("", DrawingUnit::Centimetres), &mut Remarks::default()).unwrap();
     let length = |p: &[Piece]| p[0].path("edge_3").unwrap().length();
     assert!((length(&inches) - length(&pieces)).abs() < 1e-6);
     assert!((length(&centimetres) - length(&pieces)).abs() < 1e-9);
@@ -333,7 +337,8 @@ fn all_faults_of_a_file_are_told_at_once() {
     for name in ["FRONT", "BACK"] {
         d.block(name, "M", None).poly(1, &[[0.0, 0.0], [100.0, 0.0], [100.0, 90.0]]).end();
     }
-    let all = pieces_of(&d.bytes(None), "", DrawingUnit::Millimetres, &mut Remarks::default()).unwrap_err();
+    let all =
+        pieces_of(&d.bytes(None), &asked("", DrawingUnit::Millimetres), &mut Remarks::default()).unwrap_err();
     assert_eq!(all.len(), 2, "{all:?}");
 }
 
@@ -391,7 +396,7 @@ fn nothing_is_sewn_until_the_proposals_are_given_back() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("leg.dxf"), leggings().bytes(Some("METRIC"))).unwrap();
     let unit = DrawingUnit::Auto;
-    let stage = DxfPattern { file: "leg.dxf".into(), size: "M".into(), unit, seams: String::new() };
+    let stage = DxfPattern { file: "leg.dxf".into(), ..asked("M", unit) };
     let (pattern, plan, files, told) = run(dir.path(), &stage).unwrap();
     assert!(pattern.seams.is_empty() && plan.seams.is_empty() && pattern.check().is_ok());
     let count = propose::propose(&pattern.pieces).len();
@@ -498,4 +503,29 @@ fn a_boundary_in_one_line_is_split_at_its_corners_and_a_hair_is_closed() {
         told[0],
         "the boundary of piece \"P\" was open by 1.00 mm between \"edge_0\" and \"edge_1\": closed"
     );
+}
+
+#[test]
+fn names_are_read_in_the_encoding_that_is_asked_for() {
+    let mut d = Dxf::default();
+    half(&mut d, "Front", "M", 1.0, 60.0);
+    let (name, _, _) = encoding_rs::SHIFT_JIS.encode("前身頃");
+    let plain = d.bytes(None);
+    let cut = |bytes: &[u8], of: &[u8], by: &[u8]| -> Vec<u8> {
+        let at = bytes.windows(of.len()).position(|w| w == of).unwrap();
+        [&bytes[..at], by, &bytes[at + of.len()..]].concat()
+    };
+    let bytes = cut(&plain, b"Piece Name: Front", &[b"Piece Name: ", name.as_ref()].concat());
+    let named = |encoding: &str| {
+        let asked = DxfPattern { encoding: encoding.into(), ..asked("", DrawingUnit::Millimetres) };
+        pieces_of(&bytes, &asked, &mut Remarks::default()).map(|p| p[0].name.clone())
+    };
+    assert_eq!(named("shift_jis").unwrap(), "前身頃");
+    assert_ne!(named("").unwrap(), "前身頃");
+    let refused = named("jis 3").unwrap_err().remove(0);
+    assert_eq!(
+        (refused.to_string().as_str(), refused.fault().param),
+        ("there is no encoding \"jis 3\"", "encoding")
+    );
+    assert_eq!(named("utf-8").unwrap_err()[0].to_string(), "it is not text in \"utf-8\"");
 }

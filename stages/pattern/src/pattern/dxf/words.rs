@@ -1,6 +1,6 @@
 //! What the texts of a DXF say without the codes by which programs write and form them.
 
-use super::decode::code_page;
+use super::super::letters::encoding;
 
 /// A text with its letters: `\U+XXXX` is a letter of Unicode, `\M+nXXXX` one of a code page.
 pub(super) fn letters(raw: &str) -> String {
@@ -33,7 +33,7 @@ fn mif(text: &str) -> Option<(String, usize)> {
         _ => return None,
     };
     let bytes = u16::from_str_radix(code.get(1..5)?, 16).ok()?.to_be_bytes();
-    let (letter, _, wrong) = code_page(page)?.decode(if bytes[0] == 0 { &bytes[1..] } else { &bytes });
+    let (letter, _, wrong) = encoding(page)?.decode(if bytes[0] == 0 { &bytes[1..] } else { &bytes });
     (!wrong).then(|| (letter.into_owned(), 8))
 }
 

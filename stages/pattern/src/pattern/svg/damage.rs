@@ -1,6 +1,7 @@
 //! What may be wrong with an SVG file beyond repair.
 
 use super::super::faults::PatternFault;
+use super::super::letters::LettersFault;
 use std::fmt;
 use thiserror::Error;
 use toile_core::ErrorCode;
@@ -27,6 +28,12 @@ pub(super) enum SvgDamage {
     Compressed,
     #[error("it is not UTF-8 text")]
     Encoding,
+    #[error(transparent)]
+    Letters(LettersFault),
+    #[error("it says that it is in \"{name}\", which is not so")]
+    SaidEncoding { name: String },
+    #[error("no layer and no group is called \"{size}\"")]
+    NoSize { size: String, known: Vec<String> },
     #[error("it has {bytes} bytes, {most} are the most")]
     Large { bytes: usize, most: usize },
     #[error("it has more than {most} {what}")]
@@ -66,7 +73,14 @@ impl SvgDamage {
     pub(super) fn remedy(&self) -> String {
         match self {
             SvgDamage::Compressed => "save it as plain SVG, not as svgz".into(),
-            SvgDamage::Encoding => "save it as UTF-8".into(),
+            SvgDamage::Encoding | SvgDamage::SaidEncoding { .. } => {
+                "save it as UTF-8, or say its encoding, such as `--set 'pattern.encoding=\"windows-1252\"'`".into()
+            }
+            SvgDamage::Letters(fault) => fault.remedy(),
+            SvgDamage::NoSize { known, .. } if known.is_empty() => {
+                "it has no layers or groups with names: draw each size in a layer that is called like it, or leave `size` out".into()
+            }
+            SvgDamage::NoSize { known, .. } => format!("there are {}", known.join(", ")),
             SvgDamage::Large { .. } | SvgDamage::Many { .. } => {
                 "save the pieces alone, or fewer at a time".into()
             }
@@ -94,8 +108,10 @@ impl SvgDamage {
     pub(super) fn fault(&self) -> PatternFault {
         let code = match self {
             SvgDamage::Crosses { .. } => ErrorCode::DegenerateTriangles,
+            SvgDamage::Letters(_) | SvgDamage::NoSize { .. } => ErrorCode::InvalidParameter,
             SvgDamage::Compressed
             | SvgDamage::Encoding
+            | SvgDamage::SaidEncoding { .. }
             | SvgDamage::Large { .. }
             | SvgDamage::Many { .. }
             | SvgDamage::Xml { .. }
@@ -111,6 +127,11 @@ impl SvgDamage {
             | SvgDamage::Size { .. }
             | SvgDamage::Unsewable { .. } => ErrorCode::PatternLoading,
         };
-        PatternFault { code, param: "file", what: self.to_string(), remedy: Some(self.remedy()) }
+        let param = match self {
+            SvgDamage::Letters(_) => "encoding",
+            SvgDamage::NoSize { .. } => "size",
+            _ => "file",
+        };
+        PatternFault { code, param, what: self.to_string(), remedy: Some(self.remedy()) }
     }
 }

@@ -89,16 +89,23 @@ struct Walk<'t> {
     ids: BTreeMap<&'t str, Node<'t, 't>>,
     /// Classes and ids that a style sheet hides, with `.` or `#` before them.
     hidden: BTreeSet<String>,
+    /// Groups that are left out, by where they begin in the file.
+    others: BTreeSet<usize>,
     visited: usize,
 }
 
-/// What is drawn below the root; `unit` is the length of the file's unit in metres.
-pub(super) fn drawing<'t>(root: Node<'t, 't>, unit: f64) -> Result<Drawing<'t>, SvgDamage> {
+/// What is drawn below the root, without the groups that begin at the bytes `others`; `unit` is the
+/// length of the file's unit in metres.
+pub(super) fn drawing<'t>(
+    root: Node<'t, 't>,
+    unit: f64,
+    others: &BTreeSet<usize>,
+) -> Result<Drawing<'t>, SvgDamage> {
     let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n)));
     let styles = root.descendants().filter(|n| n.has_tag_name_local("style"));
     let hidden = styles.flat_map(|n| hidden_by(&inner_text(n))).collect();
     let drawing = Drawing { groups: vec![Group { layer: true, ..Group::default() }], ..Drawing::default() };
-    let mut walk = Walk { drawing, ids: ids.collect(), hidden, visited: 0 };
+    let mut walk = Walk { drawing, ids: ids.collect(), hidden, others: others.clone(), visited: 0 };
     let to = Affine::scale_non_uniform(unit, -unit);
     walk.children(root, &State { to, group: 0, role: None, depth: 0 })?;
     walk.drawing.without_dimensions();
@@ -131,7 +138,7 @@ impl Drawing<'_> {
     }
 }
 
-trait Local {
+pub(super) trait Local {
     fn has_tag_name_local(&self, name: &str) -> bool;
 }
 
@@ -167,12 +174,12 @@ fn inner_text(node: Node<'_, '_>) -> String {
 }
 
 /// The value of an attribute by its name without a prefix.
-fn local<'t>(node: Node<'t, 't>, name: &str) -> Option<&'t str> {
+pub(super) fn local<'t>(node: Node<'t, 't>, name: &str) -> Option<&'t str> {
     node.attributes().find(|a| a.name() == name).map(|a| a.value())
 }
 
 /// What an element is called: by its label, the name that Illustrator keeps, its title, its id.
-fn name(node: Node<'_, '_>) -> Option<Name> {
+pub(super) fn name(node: Node<'_, '_>) -> Option<Name> {
     let label = node.attributes().find(|a| a.name() == "label" && a.namespace().is_some()).map(|a| a.value());
     let title = || node.children().find(|n| n.has_tag_name_local("title")).map(inner_text);
     let given = label.or_else(|| node.attribute("data-name")).map(str::to_owned).or_else(title);
@@ -237,7 +244,7 @@ impl<'t> Walk<'t> {
         if state.depth > MOST_DEPTH {
             return Err(SvgDamage::Many { what: "groups within each other", most: MOST_DEPTH });
         }
-        if self.is_hidden(node) {
+        if self.is_hidden(node) || self.others.contains(&node.range().start) {
             return Ok(());
         }
         let own = match node.attribute("transform") {

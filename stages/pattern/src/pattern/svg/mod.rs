@@ -12,6 +12,7 @@ mod outlined;
 mod path;
 mod pieces;
 mod role;
+mod sized;
 mod source;
 #[cfg(test)]
 mod tests;
@@ -38,7 +39,7 @@ use toile_core::prelude::*;
 #[stage(
     role = Reader,
     source = "SVG 1.1; FreeSewing 4",
-    version = 3,
+    version = 4,
     example = "SvgPattern(file: \"teagan.svg\")",
     contracts(Deterministic, ThreadInvariant)
 )]
@@ -49,6 +50,13 @@ pub struct SvgPattern {
     /// The unit of the drawing's numbers, those of its viewBox.
     #[param(default = DrawingUnit::Auto)]
     pub unit: DrawingUnit,
+    /// The layer or group to read of a drawing that has one for each size; empty to read all.
+    #[param(default = String::new())]
+    pub size: String,
+    /// The encoding of the file, such as `windows-1252`; empty for the one that the file says, or
+    /// UTF-8.
+    #[param(default = String::new())]
+    pub encoding: String,
     /// The file with the seams, relative to the pipeline; empty where they are to be proposed.
     #[param(default = String::new())]
     pub seams: String,
@@ -63,7 +71,7 @@ impl SvgPattern {
         let mut told = Remarks::default();
         let refused =
             |all: Vec<SvgDamage>| faults::refused(&self.file, all.iter().map(SvgDamage::fault).collect());
-        let pieces = pieces_of(&bytes, self.unit, &mut told).map_err(refused)?;
+        let pieces = pieces_of(&bytes, self, &mut told).map_err(refused)?;
         let unsewable = |what: String, remedy: &str| {
             refused(vec![SvgDamage::Unsewable { what, remedy: remedy.to_owned() }])
         };
@@ -83,13 +91,14 @@ impl SvgPattern {
 /// The pieces of a file, each as often as it is cut.
 ///
 /// Errors: all that is wrong with them.
-fn pieces_of(bytes: &[u8], unit: DrawingUnit, told: &mut Remarks) -> Result<Vec<Piece>, Vec<SvgDamage>> {
+fn pieces_of(bytes: &[u8], asked: &SvgPattern, told: &mut Remarks) -> Result<Vec<Piece>, Vec<SvgDamage>> {
     let one = |damage| vec![damage];
-    let text = source::text(bytes).map_err(one)?;
-    let tree = source::tree(text).map_err(one)?;
+    let text = source::text(bytes, &asked.encoding).map_err(one)?;
+    let tree = source::tree(&text).map_err(one)?;
     let root = tree.root_element();
-    let taken = units::unit(root, text, unit).map_err(one)?;
-    let drawing = drawing::drawing(root, taken.metres).map_err(one)?;
+    let taken = units::unit(root, &text, asked.unit).map_err(one)?;
+    let others = sized::others(root, &asked.size, told).map_err(one)?;
+    let drawing = drawing::drawing(root, taken.metres, &others).map_err(one)?;
     if drawing.dimensions > 0 {
         told.notes.push(format!("{} dimension lines are left out", drawing.dimensions));
     }

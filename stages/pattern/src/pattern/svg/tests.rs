@@ -21,13 +21,17 @@ fn page(inside: &str) -> String {
 /// millimetre, whatever the page says.
 fn read(svg: &str) -> Result<(Vec<Piece>, Vec<String>), SvgDamage> {
     let mut told = Remarks::default();
-    let pieces = pieces_of(svg.as_bytes(), DrawingUnit::Millimetres, &mut told);
+    let pieces = pieces_of(svg.as_bytes(), &in_unit(DrawingUnit::Millimetres), &mut told);
     let told = || [told.warnings, told.notes].concat().into_iter().filter(|t| !t.starts_with('`')).collect();
     pieces.map(|p| (p, told())).map_err(|mut all| all.remove(0))
 }
 
+fn in_unit(unit: DrawingUnit) -> SvgPattern {
+    SvgPattern { unit, ..SvgPattern::default() }
+}
+
 fn of_bytes(bytes: &[u8]) -> Result<Vec<Piece>, Vec<SvgDamage>> {
-    pieces_of(bytes, DrawingUnit::Millimetres, &mut Remarks::default())
+    pieces_of(bytes, &in_unit(DrawingUnit::Millimetres), &mut Remarks::default())
 }
 
 /// The one piece of a page.
@@ -199,7 +203,7 @@ fn units_are_those_of_the_page_and_told() {
     let sized = |attributes: &str, unit: DrawingUnit| {
         let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {attributes}>{square}</svg>");
         let mut told = Remarks::default();
-        let pieces = pieces_of(svg.as_bytes(), unit, &mut told).map_err(|mut all| all.remove(0))?;
+        let pieces = pieces_of(svg.as_bytes(), &in_unit(unit), &mut told).map_err(|mut all| all.remove(0))?;
         Ok::<_, SvgDamage>((length(&pieces[0], "edge_0") / 960.0, told))
     };
     let near = |found: Result<(f64, Remarks), SvgDamage>, metres: f64| {
@@ -245,7 +249,7 @@ fn units_are_those_of_the_page_and_told() {
     );
     let illustrator = "<?xml version=\"1.0\"?><!-- Generator: Adobe Illustrator 28.0 -->".to_owned()
         + &format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"500\" height=\"500\">{square}</svg>");
-    let pieces = pieces_of(illustrator.as_bytes(), DrawingUnit::Auto, &mut Remarks::default()).unwrap();
+    let pieces = pieces_of(illustrator.as_bytes(), &SvgPattern::default(), &mut Remarks::default()).unwrap();
     assert!((length(&pieces[0], "edge_0") / 960.0 / (0.0254 / 72.0) - 1.0).abs() < 1e-9);
 }
 
@@ -420,6 +424,79 @@ fn a_half_piece_may_be_drawn_without_its_middle() {
     assert!((b.y - a.y - 0.18).abs() < 1e-12);
 }
 
+/// Two sizes, a layer each, with a title that is the same in both.
+fn two_sizes() -> String {
+    let layer = |name: &str, side: u32| {
+        format!(
+            "<g inkscape:groupmode=\"layer\" inkscape:label=\"{name}\"><path id=\"p{side}\" inkscape:label=\"front\" d=\"M0 0 H{side} V{side} H0 Z\"/></g>"
+        )
+    };
+    page(&format!("{}{}", layer("S", 300), layer("M", 400))).replacen(
+        "<svg",
+        "<svg xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"",
+        1,
+    )
+}
+
+#[test]
+fn one_size_is_read_of_a_drawing_that_has_a_layer_for_each() {
+    let of_size = |size: &str| {
+        let mut told = Remarks::default();
+        let asked = SvgPattern { size: size.into(), ..in_unit(DrawingUnit::Millimetres) };
+        let pieces = pieces_of(two_sizes().as_bytes(), &asked, &mut told).map_err(|mut all| all.remove(0))?;
+        Ok((pieces.iter().map(perimeter).collect::<Vec<f64>>(), told.notes))
+    };
+    let (perimeters, notes) = of_size("m").unwrap();
+    assert!(perimeters.len() == 1 && (perimeters[0] - 1.6).abs() < 1e-9, "{perimeters:?}");
+    assert!(notes.contains(&"\"m\" is read, without S".to_owned()), "{notes:?}");
+    assert_eq!(of_size("").unwrap().0.len(), 2);
+    let refused: SvgDamage = of_size("XL").unwrap_err();
+    assert_eq!(
+        (refused.to_string().as_str(), refused.remedy().as_str(), refused.fault().param),
+        ("no layer and no group is called \"XL\"", "there are S, M", "size")
+    );
+    let bare = SvgDamage::NoSize { size: "XL".into(), known: Vec::new() };
+    assert_eq!(
+        bare.remedy(),
+        "it has no layers or groups with names: draw each size in a layer that is called like it, or leave `size` out"
+    );
+}
+
+#[test]
+fn letters_are_in_the_encoding_that_is_asked_for_or_that_the_file_says() {
+    let drawing = page("<g id=\"Rücken\"><path d=\"M0 0 H300 V300 H0 Z\"/></g>");
+    let latin = |head: &str| {
+        let (bytes, _, _) = encoding_rs::WINDOWS_1252.encode(&drawing);
+        [head.as_bytes(), &bytes].concat()
+    };
+    let of = |bytes: &[u8], encoding: &str| {
+        let asked = SvgPattern { encoding: encoding.into(), ..in_unit(DrawingUnit::Millimetres) };
+        let pieces = pieces_of(bytes, &asked, &mut Remarks::default()).map_err(|mut all| all.remove(0))?;
+        Ok::<_, SvgDamage>(pieces[0].name.clone())
+    };
+    let declared = "<?xml version=\"1.0\" encoding=\"iso-8859-1\"?>\n";
+    assert_eq!(of(&latin(declared), "").unwrap(), "Rücken");
+    assert_eq!(of(&latin(""), "windows-1252").unwrap(), "Rücken");
+    // A declaration that was left as it was.
+    assert_eq!(of(format!("{declared}{drawing}").as_bytes(), "").unwrap(), "Rücken");
+    let wide: Vec<u8> =
+        [0xfeff_u16].into_iter().chain(drawing.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    assert_eq!(of(&wide, "").unwrap(), "Rücken");
+    let refused = |bytes: &[u8], encoding: &str| {
+        let damage = of(bytes, encoding).unwrap_err();
+        (damage.to_string(), damage.remedy(), damage.fault().param)
+    };
+    let remedy = "save it as UTF-8, or say its encoding, such as `--set 'pattern.encoding=\"windows-1252\"'`";
+    assert_eq!(refused(&latin(""), ""), ("it is not UTF-8 text".to_owned(), remedy.to_owned(), "file"));
+    let other = "<?xml version=\"1.0\" encoding=\"shift_jis\"?>\n";
+    assert_eq!(
+        refused(&[other.as_bytes(), b"\xa0\xff"].concat(), ""),
+        ("it says that it is in \"shift_jis\", which is not so".to_owned(), remedy.to_owned(), "file")
+    );
+    assert_eq!(refused(drawing.as_bytes(), "latin 9000").0, "there is no encoding \"latin 9000\"");
+    assert_eq!(refused(drawing.as_bytes(), "latin 9000").2, "encoding");
+}
+
 #[test]
 fn damage_is_refused_with_element_and_place() {
     #[track_caller]
@@ -432,7 +509,7 @@ fn damage_is_refused_with_element_and_place() {
     is("<html/>", "its first element is \"html\", not \"svg\"", "give a file that was saved as SVG");
     is("\u{1f}\u{8b}", "it is no XML at line 1 column 1: unknown token", again);
     assert_eq!(of_bytes(&[0x1f, 0x8b, 8]).unwrap_err(), [SvgDamage::Compressed]);
-    assert_eq!(of_bytes(&[0xff, 0xfe]).unwrap_err(), [SvgDamage::Encoding]);
+    assert_eq!(of_bytes(&[0xc3, 0x28]).unwrap_err(), [SvgDamage::Encoding]);
     let redraw = "draw the element again, or take it out";
     is(
         &page("<g>\n <path id=\"hem\" d=\"M 0 0 L x\"/></g>"),
@@ -513,7 +590,7 @@ fn run(folder: &FilePath, stage: &SvgPattern) -> Result<(Pattern, OutputFiles, V
 fn nothing_is_sewn_until_the_proposals_are_given_back() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("tee.svg"), tee()).unwrap();
-    let stage = SvgPattern { file: "tee.svg".into(), unit: DrawingUnit::Auto, seams: String::new() };
+    let stage = SvgPattern { file: "tee.svg".into(), ..SvgPattern::default() };
     let (pattern, files, told) = run(dir.path(), &stage).unwrap();
     assert!(pattern.seams.is_empty());
     assert_eq!(
