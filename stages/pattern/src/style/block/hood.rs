@@ -27,6 +27,8 @@ const LEAST_DEPTH: f64 = 1.15;
 const EASE: [f64; 2] = [0.1, 0.22];
 /// Height of the place where the crown is deepest, as a share of the height.
 const DEEPEST: f64 = 0.5;
+/// How far the opening lies back at its top, as a share of the depth.
+const BACK: f64 = 0.1;
 /// How far the halves stand from the head at first, metres.
 const AWAY: f64 = 0.025;
 /// A head begins at this share of the way from the throat to the crown.
@@ -61,7 +63,7 @@ pub(super) fn half(side: &Side, head: f64, is_cut: bool) -> Flat {
         let long = front.length() + back.length();
         let deep = (DEPTH * high).max(LEAST_DEPTH * long);
         let at = |x: f64, y: f64| Point2::new(x, y * high);
-        let (nape, behind, opening) = (at(long, 0.0), at(deep, DEEPEST), at(0.0, 1.0));
+        let (nape, behind, opening) = (at(long, 0.0), at(deep, DEEPEST), at(BACK * deep, 1.0));
         let out = deep - long;
         let lower = Curve([nape, at(long + 0.6 * out, 0.15), at(deep, DEEPEST - 0.2), behind]);
         let upper = Curve([behind, at(deep, DEEPEST + 0.27), at(0.52 * deep, 1.0), opening]);

@@ -14,7 +14,7 @@ use super::sleeve::SleeveShape;
 use super::waist::{self, Waist};
 use crate::mesh::crossing::first_crossing;
 use crate::style::block::template::curve::Curve;
-use crate::style::block::template::fit::{Fit, SEAT};
+use crate::style::block::template::fit::{Fit, SEAT, SHORT};
 use crate::style::block::template::flat::{Flat, FlatEdge, PARTS, Run, Side, straight};
 use crate::style::block::template::form::Form;
 use crate::style::block::template::piece_role::{Layer, PieceRole};
@@ -35,9 +35,6 @@ const CORNER: f64 = 0.1;
 const ARMHOLE: [f64; 2] = [0.18, 0.08];
 /// Both points of the fork, as a share of the seat's girth.
 const FORK: f64 = 0.15;
-/// Legs are short where their inseam is shorter than this share of the outseam: what the fork shows
-/// beyond the seat's width is then their flare.
-const SHORT: f64 = 0.3;
 /// Legs are long from so many times the length of the point on.
 const LONG: f64 = 6.0;
 /// The point behind lies no lower than this share of the way from hem to fork.
@@ -233,6 +230,7 @@ fn leg(side: &Side, layer: Layer) -> Flat {
     let inner = side.edges[0].1.length();
     let outer = |role| side.edge(role).map_or(0.0, |c: Curve| c.length());
     let are_short = inner < SHORT * (outer(EdgeRole::Outseam) + outer(EdgeRole::Hip));
+    // What the fork shows beyond the seat's width is the flare of short legs.
     let shown = if are_short { 0.0 } else { 2.0 * (fork - seat).max(0.0) };
     let hidden = (FORK * 4.0 * seat - shown).max(0.0);
     let point = match layer {

@@ -16,7 +16,7 @@ use toile_core::artifact::{Point2, Vector2};
 /// Width at the armpit, as a share of the armhole's chord: a cap of three fifths, and of a quarter.
 const WIDE: [f64; 2] = [0.8, 0.97];
 /// A short sleeve that is narrower at the armpit hangs beside the body, and lies folded there.
-const LEAST_SHORT: f64 = 0.65;
+const LEAST_SHORT: f64 = 0.72;
 
 /// A sleeve's curves, from the armpit counter-clockwise up to the shoulder point; its cap closes
 /// it.

@@ -20,6 +20,10 @@ use toile_core::artifact::{EdgeRole, Point2, Vector2};
 
 /// The heights of the hip and of the seat above the fork, as shares of the rise.
 const HIP: f64 = 0.25;
+/// And the former of short legs, which flare.
+const HIP_OF_SHORTS: f64 = 0.5;
+/// Legs are short where their inseam is shorter than this share of the outseam.
+pub(crate) const SHORT: f64 = 0.3;
 pub(crate) const SEAT: f64 = 0.35;
 /// Spread of an outline about its template, as a share of the garment's size.
 const SPREAD: f64 = 0.006;
@@ -121,7 +125,9 @@ impl Fit {
         edges().next()?;
         let widest = |s: &Vec<Bow>| {
             let (fork, waist) = (s[0].a.y, s[s.len() - 1].b.y);
-            let low = if form.has_legs() { fork + HIP * (waist - fork) } else { f64::NEG_INFINITY };
+            let outer: f64 = edges().map(|(k, _)| s[k].length()).sum();
+            let share = if s[0].length() < SHORT * outer { HIP_OF_SHORTS } else { HIP };
+            let low = if form.has_legs() { fork + share * (waist - fork) } else { f64::NEG_INFINITY };
             let points = edges().flat_map(|(k, _)| s[k].points());
             points.filter(|p| p.y >= low).map(|p| p.x).fold(0.0, f64::max)
         };
