@@ -13,14 +13,14 @@ use toile_core::{Failure, RunLog, StageRecord};
 ///
 /// `reason.txt`; the pages of stages that report on a run, with the reason on top; and the
 /// artifacts of the stage that failed, with [`RunOptions::keep`] those of all stages. Nothing where
-/// no stage had made anything that can be shown, or the run was stopped.
+/// no stage had made anything that can be shown, or the run was stopped, unless
+/// [`RunOptions::so_far_of_stopped`] asks for that.
 pub type SoFar = Arc<Mutex<Vec<OutputFile>>>;
 
 /// Fills [`RunOptions::so_far`].
 pub(super) fn leave(run: &mut PipelineRun<'_>, options: &RunOptions, error: &RunError) {
-    let Some(sink) = options.so_far.as_ref().filter(|_| error.error.code != ErrorCode::Cancelled) else {
-        return;
-    };
+    let is_asked = options.so_far_of_stopped || error.error.code != ErrorCode::Cancelled;
+    let Some(sink) = options.so_far.as_ref().filter(|_| is_asked) else { return };
     // If something fails here, the user still gets the first error.
     let files = catch_unwind(AssertUnwindSafe(|| files(run, options.keep, error))).unwrap_or_default();
     *sink.lock().unwrap_or_else(PoisonError::into_inner) = files;
