@@ -13,8 +13,13 @@
 use crate::args::Shard;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use toile_core::StageError;
 use toile_core::artifact::{Digest, Digester};
+
+/// How long a lock is waited for: of a batch that was killed, a process that it was about to start
+/// may hold it for a moment.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The output folder, held by one share of a batch.
 pub(crate) struct BatchFolder {
@@ -119,13 +124,17 @@ fn share_name(shard: Shard) -> String {
     format!("{}-of-{}", shard.number, shard.count)
 }
 
-/// A file with its lock; none where another program holds it.
+/// A file with its lock; none where another program holds it and goes on doing so.
 fn held(path: &Path) -> Result<Option<File>, StageError> {
     let file = File::options().create(true).append(true).open(path).map_err(|e| unwritten(path, &e))?;
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => Ok(None),
-        // A file system without locks protects nobody.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
+    let until = Instant::now() + PATIENCE;
+    loop {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) if Instant::now() < until => std::thread::sleep(PATIENCE / 20),
+            Err(TryLockError::WouldBlock) => return Ok(None),
+            // A file system without locks protects nobody.
+            Ok(()) | Err(TryLockError::Error(_)) => return Ok(Some(file)),
+        }
     }
 }
 

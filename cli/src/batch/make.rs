@@ -104,22 +104,25 @@ fn of_table(table: &Path, folder: &Path) -> Result<Vec<String>, Vec<String>> {
     let Some(id_column) = head.iter().position(|cell| cell == "id") else {
         return Err(at((first, "the first row has no column `id`".into())));
     };
-    let (mut lines, mut places) = (Vec::new(), Vec::new());
+    // Each garment in the line of its row, so that what a manifest refuses is told by the table's.
+    let (mut text, mut written) = (String::new(), 1);
     let mut faults = Vec::new();
     for (number, row) in rows {
         match of_row(&head, id_column, &row, [table.parent().unwrap_or(Path::new("")), folder]) {
             Ok(line) => {
-                lines.push(line);
-                places.push(number);
+                text += &"\n".repeat(number - written);
+                text += &line;
+                written = number;
             }
-            Err(message) => faults.extend(at((number, message))),
+            Err(message) => faults.push(LineFault { line: number, message }),
         }
     }
-    // What a manifest refuses is told by the table's lines.
-    let (_, refused) = manifest::parse(lines.join("\n").as_bytes());
-    let line_of = |fault: &LineFault| places.get(fault.line - 1).copied().unwrap_or(first);
-    faults.extend(refused.iter().flat_map(|fault| at((line_of(fault), fault.message.clone()))));
-    if faults.is_empty() { Ok(lines) } else { Err(faults) }
+    faults.extend(manifest::parse(text.as_bytes()).1);
+    faults.sort_by_key(|fault| fault.line);
+    match faults.is_empty() {
+        true => Ok(text.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect()),
+        false => Err(faults.into_iter().flat_map(|fault| at((fault.line, fault.message))).collect()),
+    }
 }
 
 fn of_row(head: &[String], id: usize, row: &[String], folders: [&Path; 2]) -> Result<String, String> {
@@ -174,8 +177,8 @@ mod tests {
         assert_eq!(
             of_table(&table, dir.path()).unwrap_err(),
             [
-                format!("\"{name}\", line 4: the row has 1 cells, the first row has 2"),
                 format!("\"{name}\", line 3: the id \"x\" stands in line 2, too"),
+                format!("\"{name}\", line 4: the row has 1 cells, the first row has 2"),
             ]
         );
         std::fs::write(&table, "name\nx\n").unwrap();

@@ -263,7 +263,7 @@ mod tests {
                 "line 6: the id \"a/b\" is no folder's name; write up to 100 letters, digits, `.`, `_` and `-`, a letter or digit first".into(),
                 format!("line 7: unknown field `sets`, expected `id` or `set` in column 18{form}"),
                 "line 8: the value of \"x\" is no text, number, true, false or list of them; write others as text, in RON".into(),
-                format!("line 9: \"x\" is set twice in column 34{form}"),
+                format!("line 9: \"x\" is set twice in column 35{form}"),
                 "line 10: the value of \"x\" is empty; a text without letters is written \"\\\"\\\"\"".into(),
             ]
         );

@@ -2,22 +2,22 @@
 //! was never disturbed.
 
 use super::{batch, content, ran, set, write_large};
+use std::io::Read;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
-/// Waits until so many garments are in their place; false where the batch has ended before.
-fn wait_for(child: &mut Child, garments: &std::path::Path, count: usize) -> bool {
+/// Waits until so many garments are in their place.
+fn wait_for(child: &mut Child, garments: &std::path::Path, count: usize) {
     let until = Instant::now() + Duration::from_secs(60);
-    while Instant::now() < until {
-        if child.try_wait().unwrap().is_some() {
-            return false;
-        }
-        if std::fs::read_dir(garments).map_or(0, Iterator::count) >= count {
-            return true;
+    while std::fs::read_dir(garments).map_or(0, Iterator::count) < count {
+        assert!(Instant::now() < until, "{count} garments are not done within a minute");
+        if let Some(status) = child.try_wait().unwrap() {
+            let mut words = String::new();
+            child.stderr.take().unwrap().read_to_string(&mut words).unwrap();
+            unreachable!("it ended before {count} garments were done: {status}\n{words}");
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    unreachable!("{count} garments are not done within a minute");
 }
 
 /// Kills a batch of so many garments so often, each time after some more garments.
@@ -28,7 +28,7 @@ fn killed(garments: usize, kills: usize) {
     for kill in 0..kills {
         let mut child = batch(dir.path(), "out", &[]).spawn().unwrap();
         let done = 1 + kill * garments / kills;
-        assert!(wait_for(&mut child, &dir.path().join("out/garments"), done), "it ended before kill {kill}");
+        wait_for(&mut child, &dir.path().join("out/garments"), done);
         // A part of the time of a garment, so that kills meet all that it does.
         std::thread::sleep(Duration::from_millis(7 * kill as u64 % 40));
         child.kill().unwrap();
@@ -63,7 +63,7 @@ fn ctrl_c_keeps_what_is_done() {
     let dir = set(4);
     write_large(dir.path(), 3, 150);
     let mut child = batch(dir.path(), "out", &["--jobs", "1"]).spawn().unwrap();
-    assert!(wait_for(&mut child, &dir.path().join("out/garments"), 3));
+    wait_for(&mut child, &dir.path().join("out/garments"), 3);
     let asked = Command::new("kill").arg("-INT").arg(child.id().to_string()).status().unwrap();
     assert!(asked.success());
     let (code, out, err) = super::words(&child.wait_with_output().unwrap());
