@@ -1,12 +1,12 @@
 //! Tables as CSV (RFC 4180): commas between cells, quotes around cells that hold some.
 
 /// The line of a table, from 1, and what stands there.
-type At<T> = (usize, T);
+type AtLine<T> = (usize, T);
 
 /// The rows of a table; rows without any text are left out.
 ///
 /// Errors: a sentence.
-pub(crate) fn rows(text: &str) -> Result<Vec<At<Vec<String>>>, At<String>> {
+pub(crate) fn rows(text: &str) -> Result<Vec<AtLine<Vec<String>>>, AtLine<String>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rows = Vec::new();
     let mut row = Vec::new();

@@ -19,7 +19,7 @@ use toile_core::cost::Predicted;
 use toile_trade::cost::{predict, total};
 
 /// Makes the tasks of garments and keeps what comes of them.
-pub(crate) struct Keeper<'a, 'b> {
+pub(crate) struct GarmentKeeper<'a, 'b> {
     args: &'a BatchArgs,
     plan: &'a BatchPlan,
     folder: &'a BatchFolder,
@@ -32,7 +32,7 @@ pub(crate) struct Keeper<'a, 'b> {
     through: usize,
 }
 
-impl<'a, 'b> Keeper<'a, 'b> {
+impl<'a, 'b> GarmentKeeper<'a, 'b> {
     pub(crate) fn new(
         args: &'a BatchArgs,
         plan: &'a BatchPlan,
@@ -46,7 +46,7 @@ impl<'a, 'b> Keeper<'a, 'b> {
             |cache: std::sync::Arc<toile_pipeline::cache::Cache>| std::path::absolute(cache.folder()).ok();
         let cache_dir = cache::chosen(&args.cache, streams).and_then(full);
         let costs = forecasts.then(|| KnownCosts::of(&args.cache, Some(1)));
-        Keeper { args, plan, folder, registry, streams, costs, cache_dir, through: 0 }
+        GarmentKeeper { args, plan, folder, registry, streams, costs, cache_dir, through: 0 }
     }
 
     /// The record of a garment whose process answered.
@@ -113,7 +113,7 @@ impl<'a, 'b> Keeper<'a, 'b> {
     }
 }
 
-impl Garments for Keeper<'_, '_> {
+impl Garments for GarmentKeeper<'_, '_> {
     fn expected(&mut self, place: usize) -> u64 {
         let Some(known) = &self.costs else { return 0 };
         let own = overrides(self.args, &self.plan.folder, &self.plan.garments[place]);

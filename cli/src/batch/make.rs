@@ -1,6 +1,7 @@
 //! `toile manifest`: a manifest from files or from a table.
 
 use super::manifest::{self, LineFault};
+use super::tally::counted;
 use super::{csv, names};
 use crate::args::ManifestArgs;
 use crate::verify::write_text;
@@ -37,7 +38,7 @@ pub(crate) fn make(args: &ManifestArgs, streams: &mut Streams<'_>) -> u8 {
                 streams.tell(format!("error: {e}"));
                 return exit::INVALID;
             }
-            streams.report(format!("{}: {} garments", out.display(), lines.len()));
+            streams.report(format!("{}: {}", out.display(), counted(lines.len())));
         }
     }
     exit::DONE
@@ -93,7 +94,7 @@ fn seen_from(folder: &Path, file: &Path) -> String {
     file.strip_prefix(base).unwrap_or(&file).display().to_string()
 }
 
-/// A garment for each row: its column `id`, and the columns named by paths; empty cells set nothing.
+/// A garment for each row: its column `id`, and columns named by paths. Empty cells set nothing.
 fn of_table(table: &Path, folder: &Path) -> Result<Vec<String>, Vec<String>> {
     let name = table.display();
     let text =

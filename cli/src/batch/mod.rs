@@ -39,13 +39,13 @@ use crate::trading::apart;
 use crate::validate::open;
 use crate::{Streams, at_hand, exit};
 use folder::BatchFolder;
-use keep::Keeper;
+use keep::GarmentKeeper;
 use manifest::{GarmentLine, LineFault};
 use plan::BatchPlan;
 use pool::PoolLimits;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use tally::Tally;
+use tally::BatchTally;
 use toile_core::{Registry, StageError};
 use toile_pipeline::Faults;
 
@@ -172,7 +172,7 @@ fn planned(
     streams.notice(plan.words());
     let limits = limits(args);
     let cancel = interrupt::on_ctrl_c();
-    let mut keeper = Keeper::new(args, &plan, &folder, registry, streams, limits.jobs > 1);
+    let mut keeper = GarmentKeeper::new(args, &plan, &folder, registry, streams, limits.jobs > 1);
     let ran = pool::run(&program, plan.run.iter().copied(), &limits, &cancel, &mut keeper);
     interrupt::begin_writing();
     let tally = summary::write(&folder, &plan.garments, &plan.tickets)?;
@@ -217,7 +217,7 @@ fn limits(args: &BatchArgs) -> PoolLimits {
 fn tell_end(
     args: &BatchArgs,
     folder: &BatchFolder,
-    tally: &Tally,
+    tally: &BatchTally,
     is_stopped: bool,
     streams: &mut Streams<'_>,
 ) {

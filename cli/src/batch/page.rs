@@ -1,7 +1,7 @@
 //! The contact sheet: one page of HTML beside the folder of the garments, without scripts.
 
 use super::record::ResultLine;
-use super::tally::Tally;
+use super::tally::BatchTally;
 use super::thumb;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ figure a{display:flex;height:180px;align-items:center;justify-content:center;bac
 img{max-width:180px;max-height:180px}figcaption{font-size:12px;overflow-wrap:anywhere}";
 
 /// The page; `pictured` says which garments have a small picture.
-pub(crate) fn page(lines: &[ResultLine], tally: &Tally, pictured: &dyn Fn(&str) -> bool) -> String {
+pub(crate) fn page(lines: &[ResultLine], tally: &BatchTally, pictured: &dyn Fn(&str) -> bool) -> String {
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>{0}</title><style>{STYLE}</style>\n<h1>{0}</h1>\n",
         escaped(&tally.words())
@@ -100,7 +100,7 @@ mod tests {
     fn faults_come_first_and_texts_are_escaped() {
         let lines =
             [line("a", GarmentFault::default()), line("b", GarmentFault::new("timeout", "a < b & \"c\""))];
-        let tally = Tally { garments: 2, good: 1, faults: BTreeMap::from([("timeout".into(), 1)]) };
+        let tally = BatchTally { garments: 2, good: 1, faults: BTreeMap::from([("timeout".into(), 1)]) };
         let html = page(&lines, &tally, &|id| id == "a");
         let at = |text: &str| html.find(text).unwrap_or_else(|| unreachable!("{text} is not in {html}"));
         assert!(at("<h2 id=\"timeout\">") < at("<h2 id=\"good\">"));

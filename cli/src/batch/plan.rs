@@ -4,6 +4,7 @@
 use super::folder::garment;
 use super::manifest::GarmentLine;
 use super::record::{FileDigests, GarmentRecord};
+use super::tally::counted;
 use crate::args::BatchArgs;
 use crate::reads::look;
 use rayon::prelude::*;
@@ -70,7 +71,7 @@ impl BatchPlan {
     pub(crate) fn words(&self) -> String {
         let all = self.garments.len();
         let share = if self.share == all { String::new() } else { format!(", {} in this share", self.share) };
-        format!("{all} garments{share}: {} to run, {} done or not asked for", self.run.len(), self.not_run)
+        format!("{}{share}: {} to run, {} done or not asked for", counted(all), self.run.len(), self.not_run)
     }
 }
 

@@ -69,9 +69,9 @@ pub(crate) trait Garments {
     fn ended(&mut self, garment: EndedGarment) -> Result<(), String>;
 }
 
-/// Why a process is ended from here.
+/// EndedFor a process is ended from here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Why {
+enum EndedFor {
     Stopped,
     TooLate,
     TooMuch,
@@ -88,7 +88,7 @@ struct AtWork {
 /// What a garment's thread gives back.
 struct Through {
     place: usize,
-    ended: Result<ProcessEnd<Why>, String>,
+    ended: Result<ProcessEnd<EndedFor>, String>,
     seconds: f64,
     peak: u64,
 }
@@ -125,7 +125,7 @@ pub(crate) fn run(
                 let threads = u16::try_from(threads.max(1)).unwrap_or(u16::MAX);
                 let started = garments.task(place, threads).and_then(|task| {
                     let line = serde_json::to_string(&task).map_err(|e| e.to_string())?;
-                    let look = Look::new(*limits, &stop);
+                    let look = ProcessLook::new(*limits, &stop);
                     let own = AtWork { expected, held: look.held.clone(), crowded: look.crowded.clone() };
                     let (send, program) = (send.clone(), program.clone());
                     std::thread::Builder::new()
@@ -192,7 +192,7 @@ fn relieve(at_work: &BTreeMap<usize, AtWork>, memory: u64) {
 }
 
 /// Looks at a garment's process from time to time.
-struct Look {
+struct ProcessLook {
     limits: PoolLimits,
     started: Instant,
     stop: Arc<AtomicBool>,
@@ -201,32 +201,32 @@ struct Look {
     peak: u64,
 }
 
-impl Look {
+impl ProcessLook {
     fn new(limits: PoolLimits, stop: &Arc<AtomicBool>) -> Self {
         let (held, crowded) = Default::default();
-        Look { limits, started: Instant::now(), stop: stop.clone(), held, crowded, peak: 0 }
+        ProcessLook { limits, started: Instant::now(), stop: stop.clone(), held, crowded, peak: 0 }
     }
 
-    fn at(&mut self, process: u32) -> Option<Why> {
+    fn at(&mut self, process: u32) -> Option<EndedFor> {
         let held = memory::held(process).unwrap_or(0);
         self.held.store(held, Ordering::SeqCst);
         self.peak = self.peak.max(held);
         let end = self.limits.max_time.map(|limit| limit + GRACE);
         if self.stop.load(Ordering::SeqCst) {
-            Some(Why::Stopped)
+            Some(EndedFor::Stopped)
         } else if held > self.limits.max_memory {
-            Some(Why::TooMuch)
+            Some(EndedFor::TooMuch)
         } else if self.crowded.load(Ordering::SeqCst) {
-            Some(Why::Crowded)
+            Some(EndedFor::Crowded)
         } else if end.is_some_and(|end| self.started.elapsed() > end) {
-            Some(Why::TooLate)
+            Some(EndedFor::TooLate)
         } else {
             None
         }
     }
 }
 
-fn attend(program: &Apart, place: usize, line: &str, mut look: Look, send: &Sender<Through>) {
+fn attend(program: &Apart, place: usize, line: &str, mut look: ProcessLook, send: &Sender<Through>) {
     let mut ended = program.process(line, |process| look.at(process));
     let seconds = look.started.elapsed().as_secs_f64();
     // Ctrl-C reaches the process as soon as the batch, which notes it with its next look.
@@ -235,14 +235,14 @@ fn attend(program: &Apart, place: usize, line: &str, mut look: Look, send: &Send
         && answer(end).is_none()
     {
         std::thread::sleep(3 * TICK);
-        end.stopped = look.stop.load(Ordering::SeqCst).then_some(Why::Stopped);
+        end.stopped = look.stop.load(Ordering::SeqCst).then_some(EndedFor::Stopped);
     }
     // Who does not listen any more has ended with an error of its own.
     let _ = send.send(Through { place, ended, seconds, peak: look.peak });
 }
 
 /// What a process has answered; none where it broke off.
-fn answer(end: &ProcessEnd<Why>) -> Option<GarmentAnswer> {
+fn answer(end: &ProcessEnd<EndedFor>) -> Option<GarmentAnswer> {
     serde_json::from_slice::<GarmentAnswer>(&end.answer).ok().filter(|answer| !answer.cancelled)
 }
 
@@ -254,9 +254,9 @@ fn told(through: Through, limits: &PoolLimits) -> Result<Option<EndedGarment>, S
     let ended = ended?;
     let broken = |code, fault| GarmentEnd::Broken(code, fault);
     let end = match ended.stopped {
-        Some(Why::Stopped | Why::Crowded) => return Ok(None),
-        Some(Why::TooLate) => broken(exit::STOPPED, late(limits.max_time.unwrap_or_default())),
-        Some(Why::TooMuch) => broken(exit::STOPPED, too_much(limits.max_memory)),
+        Some(EndedFor::Stopped | EndedFor::Crowded) => return Ok(None),
+        Some(EndedFor::TooLate) => broken(exit::STOPPED, late(limits.max_time.unwrap_or_default())),
+        Some(EndedFor::TooMuch) => broken(exit::STOPPED, too_much(limits.max_memory)),
         None => match answer(&ended) {
             Some(answer) => GarmentEnd::Answered(Box::new(answer)),
             None => broke_off(&ended),
@@ -281,7 +281,7 @@ fn crashed(how: &str) -> GarmentFault {
 }
 
 /// A process that ended by itself and without an answer.
-fn broke_off(ended: &ProcessEnd<Why>) -> GarmentEnd {
+fn broke_off(ended: &ProcessEnd<EndedFor>) -> GarmentEnd {
     let Ok(status) = ended.status else {
         return GarmentEnd::Broken(exit::BUG, crashed("is lost"));
     };

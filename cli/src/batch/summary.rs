@@ -5,7 +5,7 @@ use super::folder::{BatchFolder, garment};
 use super::manifest::GarmentLine;
 use super::page::page;
 use super::record::{CostLine, GarmentRecord, ResultLine};
-use super::tally::Tally;
+use super::tally::BatchTally;
 use super::thumb;
 use serde::Serialize;
 use toile_core::StageError;
@@ -20,7 +20,7 @@ pub(crate) fn write(
     folder: &BatchFolder,
     garments: &[GarmentLine],
     tickets: &[Digest],
-) -> Result<Tally, StageError> {
+) -> Result<BatchTally, StageError> {
     // Records that another share writes after this look are seen by that share's own.
     let _held = folder.shared();
     let (lines, costs): (Vec<ResultLine>, Vec<CostLine>) = garments
@@ -31,7 +31,7 @@ pub(crate) fn write(
         })
         .map(|record| (record.line, record.costs))
         .unzip();
-    let tally = Tally::of(&lines, garments.len());
+    let tally = BatchTally::of(&lines, garments.len());
     let pictured = |id: &str| folder.garment(id).join(thumb::FILE).is_file();
     let files = [
         OutputFile::new("results.jsonl", as_lines(&lines)?.into_bytes()),
