@@ -18,7 +18,7 @@ pub(crate) use file::{
 pub(crate) use run::{CacheArgs, ExplainArgs, RunArgs, WhyArgs};
 pub(crate) use shared::{CacheChoice, Overrides};
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
-pub(crate) use verify::{MAX_TIGHT, VerifyArgs};
+pub(crate) use verify::VerifyArgs;
 
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;

@@ -7,9 +7,6 @@ use toile_core::param::Length;
 use toile_pipeline::Override;
 use toile_verify::files::Up;
 
-/// The limit of strain where none is given, percent.
-pub(crate) const MAX_TIGHT: u16 = 25;
-
 #[derive(Debug, Args)]
 pub(crate) struct VerifyArgs {
     /// The output folder of a run, or a garment's .glb or .obj file of any program
@@ -44,7 +41,7 @@ pub(crate) struct VerifyArgs {
     pub(crate) max_gap: Option<Length>,
     /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, in
     /// percent
-    #[arg(long, value_name = "PERCENT", default_value_t = MAX_TIGHT, value_parser = RangedU64ValueParser::<u16>::new().range(1..=1000))]
+    #[arg(long, value_name = "PERCENT", default_value_t = 25, value_parser = RangedU64ValueParser::<u16>::new().range(1..=1000))]
     pub(crate) max_tight: u16,
     /// What the garment is made of, where its rest is to be judged: a name like "denim", or a
     /// fabric as a pipeline names it, like 'Kes(weight: 12)'

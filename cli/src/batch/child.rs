@@ -5,11 +5,12 @@ use super::folder::contents;
 use super::record::{GarmentFault, ReadFiles, relative};
 use super::task::{GarmentAnswer, GarmentTask};
 use super::{names, thumb};
-use crate::args::{CacheChoice, MAX_TIGHT, Overrides, RunArgs, VerifyArgs};
+use crate::args::{Arguments, CacheChoice, Command, Overrides, RunArgs};
 use crate::run::{FAILED, RunEnd};
 use crate::terminal::interrupt;
 use crate::trading::apart;
 use crate::{Streams, exit, run, verify};
+use clap::Parser;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -74,7 +75,7 @@ fn answer(task: &GarmentTask, registry: &Registry) -> Result<GarmentAnswer, Stri
     }
     let is_made = [exit::DONE, exit::QUALITY].contains(&code) && answer.quality.is_object();
     if is_made && task.verify && task.until.is_none() {
-        judge(&task.out, &mut answer);
+        judge(&task.out, registry, &mut answer);
     }
     if answer.unwritten.is_none() && !answer.cancelled {
         answer.unwritten = finished(task, &answer.fault, &reads, is_made).err();
@@ -174,25 +175,15 @@ fn seen(reads: &Reads, folder: &Path) -> ReadFiles {
 }
 
 /// Judges the garment from its files; a pipeline that writes no garment is not judged.
-fn judge(folder: &Path, answer: &mut GarmentAnswer) {
+fn judge(folder: &Path, registry: &Registry, answer: &mut GarmentAnswer) {
     let (mut out, mut err) = (Vec::new(), Vec::new());
     if std::env::set_current_dir(folder).is_err() {
         return;
     }
-    let asked = VerifyArgs {
-        // As the certificate names its files.
-        garment: PathBuf::from("."),
-        pattern: None,
-        seams: None,
-        body: None,
-        compare: None,
-        unit: None,
-        max_gap: None,
-        max_tight: MAX_TIGHT,
-        out: None,
-        json: true,
-    };
-    let code = verify::verify(&asked, &mut Streams::new(None, &mut out, &mut err));
+    // As a user asks for it without any option; `.` is how the certificate names its files.
+    let asked = Arguments::try_parse_from(["toile", "verify", ".", "--json"]);
+    let Ok(Arguments { command: Command::Verify(asked), .. }) = asked else { return };
+    let code = verify::verify(&asked, registry, &mut Streams::new(None, &mut out, &mut err));
     let told: Value = serde_json::from_slice(&out).unwrap_or_default();
     if !told["verdict"].is_string() {
         answer.certificate = json!({ "verdict": null, "not_judged": told["message"] });
