@@ -5,7 +5,7 @@
 //! path; quotes may be left out. So does such a field within brackets
 //! (`--set 'body=BodyObj(file: "me.obj")'`), and each file of a list (`LISTS`).
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toile_pipeline::Override;
 
 /// Fields whose values are paths of files that a stage reads.
@@ -14,9 +14,30 @@ const FIELDS: [&str; 4] = ["file", "seams", "measurements", "panorama"];
 /// Fields whose values are lists of such paths.
 const LISTS: [&str; 1] = ["garments"];
 
-/// The overrides with their files found.
+/// The overrides with their files found from the current folder.
 pub(crate) fn found(overrides: &[Override]) -> Vec<Override> {
-    overrides.iter().map(|o| if names_file(o) { with_file(o) } else { within(o) }).collect()
+    found_from(Path::new(""), overrides)
+}
+
+/// The overrides with their files found from a folder, as those of a manifest are.
+pub(crate) fn found_from(folder: &Path, overrides: &[Override]) -> Vec<Override> {
+    overrides.iter().map(|o| if names_file(o) { with_file(folder, o) } else { within(folder, o) }).collect()
+}
+
+/// The file that an override names as its whole value.
+pub(crate) fn named(o: &Override) -> Option<&str> {
+    let is_whole = names_file(o) && !o.path.ends_with("seams") && !is_open_text(&o.value);
+    is_whole.then(|| bare(&o.value))
+}
+
+/// A value without its quotes.
+fn bare(value: &str) -> &str {
+    value.strip_prefix('"').and_then(|v| v.strip_suffix('"')).unwrap_or(value)
+}
+
+/// Whether a value begins as a text of RON, but is none that stands in plain quotes.
+fn is_open_text(value: &str) -> bool {
+    ["r\"", "r#"].iter().any(|open| value.starts_with(open)) || bare(value).contains('\\')
 }
 
 fn names_file(o: &Override) -> bool {
@@ -24,7 +45,7 @@ fn names_file(o: &Override) -> bool {
 }
 
 /// The override with the files found that fields within its value name.
-fn within(o: &Override) -> Override {
+fn within(folder: &Path, o: &Override) -> Override {
     let mut value = String::new();
     let mut rest = o.value.as_str();
     // Whether the texts that follow are in a list of files.
@@ -37,8 +58,8 @@ fn within(o: &Override) -> Override {
             Some(head) => LISTS.contains(&field_before(head)),
             None => in_list && before == ",",
         };
-        match std::path::absolute(text) {
-            Ok(full) if (in_list || FIELDS.contains(&field_before(before))) && Path::new(text).is_file() => {
+        match full(folder, text) {
+            Some(full) if in_list || FIELDS.contains(&field_before(before)) => {
                 value.push_str(&format!("{:?}", full.display().to_string()));
             }
             _ => value.push_str(&format!("\"{text}\"")),
@@ -66,16 +87,20 @@ fn next_text(value: &str) -> Option<(&str, &str, &str)> {
     is_plain.then_some((before, text, after))
 }
 
-fn with_file(o: &Override) -> Override {
+/// The full path of a file that is seen from a folder.
+fn full(folder: &Path, text: &str) -> Option<PathBuf> {
+    let path = folder.join(text);
+    std::path::absolute(&path).ok().filter(|_| path.is_file())
+}
+
+fn with_file(folder: &Path, o: &Override) -> Override {
     let is_text = ["\"", "r\"", "r#"].iter().any(|open| o.value.starts_with(open));
-    let bare = o.value.strip_prefix('"').and_then(|v| v.strip_suffix('"')).unwrap_or(&o.value);
-    match std::path::absolute(bare) {
-        Ok(full) if Path::new(bare).is_file() => {
-            Override { value: format!("{:?}", full.display().to_string()), ..o.clone() }
-        }
+    let bare = bare(&o.value);
+    match full(folder, bare) {
+        Some(full) => Override { value: format!("{:?}", full.display().to_string()), ..o.clone() },
         // A list of seams is none of files.
-        _ if is_text || !o.path.ends_with("file") => o.clone(),
-        _ => Override { value: format!("{bare:?}"), ..o.clone() },
+        None if is_text || !o.path.ends_with("file") => o.clone(),
+        None => Override { value: format!("{bare:?}"), ..o.clone() },
     }
 }
 

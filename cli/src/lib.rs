@@ -5,6 +5,7 @@
 
 mod args;
 mod at_hand;
+mod batch;
 mod cache;
 mod cards;
 mod contracts;
@@ -126,7 +127,7 @@ fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, i
     let Arguments { command, plugins, color, quiet } = arguments;
     streams.behave(color, quiet);
     // A run in a process of its own is ended by the one that waits for it.
-    if is_program && !matches!(command, Command::RunApart) {
+    if is_program && !matches!(command, Command::RunApart | Command::RunGarment) {
         terminal::interrupt::on_ctrl_c();
     }
     match command {
@@ -176,6 +177,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
     }
     match command {
         Command::Run(args) => run::once(&args, registry, None, streams),
+        Command::Batch(args) => batch::batch(&args, registry, streams),
+        Command::Manifest(args) => batch::make::make(&args, streams),
         Command::Validate(args) => validate::validate(&args, registry, streams),
         Command::Stages { schema: true, .. } => cards::schema(registry, streams),
         Command::Stages { json, .. } => cards::list(json, registry, streams),
@@ -202,6 +205,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Trade(args) => trading::study::run(&args, registry, streams),
         Command::Tune(args) => trading::tune::run(&args, registry, streams),
         Command::RunApart => trading::apart::run(registry, streams),
+        Command::RunGarment => batch::child::run(registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
         Command::Bench { what: BenchCommand::Costs(args) } => {
             trading::bench_costs::costs(&args, registry, streams)

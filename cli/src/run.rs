@@ -16,6 +16,19 @@ use toile_pipeline::{
     write_files,
 };
 
+/// How a run has ended.
+pub(crate) struct RunEnd {
+    pub(crate) code: u8,
+    /// Why what it made, or had made when it failed, could not be written.
+    pub(crate) unwritten: Option<StageError>,
+}
+
+impl From<u8> for RunEnd {
+    fn from(code: u8) -> Self {
+        RunEnd { code, unwritten: None }
+    }
+}
+
 /// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to
 /// `reads`.
 pub(crate) fn once(
@@ -24,26 +37,37 @@ pub(crate) fn once(
     reads: Option<&Reads>,
     streams: &mut Streams<'_>,
 ) -> u8 {
+    ended(args, registry, reads, false, streams).code
+}
+
+/// As [`once`]; with `so_far_of_stopped`, a run that is stopped leaves what it had made, too.
+pub(crate) fn ended(
+    args: &RunArgs,
+    registry: &Registry,
+    reads: Option<&Reads>,
+    so_far_of_stopped: bool,
+    streams: &mut Streams<'_>,
+) -> RunEnd {
     if args.locked
         && let Err(e) = stdin::refused(&args.pipeline, "has no lock beside it")
     {
-        return streams.refuse(args.json, e);
+        return streams.refuse(args.json, e).into();
     }
     let mut pipeline = match open(&args.pipeline, &args.overrides, registry) {
         Ok(pipeline) => pipeline,
-        Err(faults) => return fail_load(&faults, args.json, streams),
+        Err(faults) => return fail_load(&faults, args.json, streams).into(),
     };
     tell_doubt(args, &mut pipeline, streams);
     let lock = match args.locked.then(|| lock::read(&args.pipeline)).transpose() {
         Ok(lock) => lock,
-        Err(e) => return streams.refuse(args.json, e),
+        Err(e) => return streams.refuse(args.json, e).into(),
     };
     let (until, also, reads_too) = (args.until.clone(), args.also.clone(), reads.cloned());
     let asked = RunOptions { until, also, reads: reads_too, ..RunOptions::default() };
     match inspect(&pipeline, &asked) {
         Ok(()) => {}
-        Err(RefusedPipeline::Run(e)) => return fail_run(&pipeline, &e, args.json, streams),
-        Err(RefusedPipeline::File(faults)) => return fail_load(&faults, args.json, streams),
+        Err(RefusedPipeline::Run(e)) => return fail_run(&pipeline, &e, args.json, streams).into(),
+        Err(RefusedPipeline::File(faults)) => return fail_load(&faults, args.json, streams).into(),
     }
     warn_before_run(&pipeline, registry, args.until.is_none(), streams);
     if let Err(e) = check_folder(&folder(args)) {
@@ -59,6 +83,7 @@ pub(crate) fn once(
     let so_far = SoFar::default();
     let options = RunOptions {
         so_far: Some(so_far.clone()),
+        so_far_of_stopped,
         meter: Some(Arc::new(costs::stopwatch())),
         expect: Some(known.clone()),
         until: args.until.clone(),
@@ -74,40 +99,38 @@ pub(crate) fn once(
             if let (true, false, Some(detail)) = (args.verbose, args.json, &e.error.detail) {
                 streams.notice(format!("detail: {detail}"));
             }
-            leave(&folder(args), &so_far, args.json, streams);
-            code
+            RunEnd { code, unwritten: leave(&folder(args), &so_far, args.json, streams).err() }
         }
         Ok(result) => {
             known.keep(&pipeline, &result.costs);
             let locked =
                 lock.map_or(exit::DONE, |l| lock::compare(&l, &pipeline, registry, &result, streams));
-            finish(args, &pipeline, result, &known, streams).max(locked)
+            let RunEnd { code, unwritten } = finish(args, &pipeline, result, &known, streams);
+            RunEnd { code: code.max(locked), unwritten }
         }
     }
 }
 
 /// Writes what a failed run has made until then into a folder of its own, so that it is not taken
 /// for a result.
-fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
+fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) -> Result<(), StageError> {
     let files = std::mem::take(&mut *so_far.lock().unwrap_or_else(PoisonError::into_inner));
     if files.is_empty() {
-        return;
+        return Ok(());
     }
     let dir = dir.join(FAILED);
     clear(&dir);
     interrupt::begin_writing();
-    match write_files(&dir, &files) {
-        Ok(_) if json => {}
-        Ok(_) => {
-            let page = files.iter().find(|f| f.path.ends_with(".html")).map_or("", |f| f.path.as_str());
-            streams.tell(format!("what the run made until then: {}", dir.join(page).display()));
-        }
-        Err(e) => streams.warn(e.to_string()),
+    write_files(&dir, &files).inspect_err(|e| streams.warn(e.to_string()))?;
+    if !json {
+        let page = files.iter().find(|f| f.path.ends_with(".html")).map_or("", |f| f.path.as_str());
+        streams.tell(format!("what the run made until then: {}", dir.join(page).display()));
     }
+    Ok(())
 }
 
 /// The folder of a run that failed, within its output folder.
-const FAILED: &str = "failed";
+pub(crate) const FAILED: &str = "failed";
 
 /// Removes what an earlier failed run has left in its folder; any other folder stays.
 fn clear(dir: &Path) {
@@ -178,7 +201,7 @@ fn finish(
     result: RunResult,
     known: &KnownCosts,
     streams: &mut Streams<'_>,
-) -> u8 {
+) -> RunEnd {
     let dir = folder(args);
     let mut files = result.files;
     files.push(OutputFile { path: "metrics.json".into(), bytes: result.metrics.to_json().into_bytes() });
@@ -200,7 +223,7 @@ fn finish(
     for (code, message) in &result.metrics.shortfalls {
         streams.tell(format!("quality: {code}: {message}"));
     }
-    if result.metrics.shortfalls.is_empty() { exit::DONE } else { exit::QUALITY }
+    RunEnd::from(if result.metrics.shortfalls.is_empty() { exit::DONE } else { exit::QUALITY })
 }
 
 /// Where the files go.
@@ -208,9 +231,10 @@ fn folder(args: &RunArgs) -> PathBuf {
     args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stdin::stem(&args.pipeline)))
 }
 
-fn unwritable(pipeline: &Pipeline, error: StageError, json: bool, streams: &mut Streams<'_>) -> u8 {
+fn unwritable(pipeline: &Pipeline, error: StageError, json: bool, streams: &mut Streams<'_>) -> RunEnd {
+    let unwritten = Some(error.clone());
     let e = RunError { stage: "writing".into(), entry: String::new(), span: 0..0, error };
-    fail_run(pipeline, &e, json, streams)
+    RunEnd { code: fail_run(pipeline, &e, json, streams), unwritten }
 }
 
 fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], streams: &mut Streams<'_>) {

@@ -109,7 +109,7 @@ fn certified(args: &VerifyArgs, registry: &Registry) -> Result<(bool, Vec<String
     let text = serde_json::to_string_pretty(&certificate)
         .map_err(|e| StageError::internal(format!("the certificate cannot be written: {e}")))?;
     let path = args.out.clone().unwrap_or_else(|| folder.join(FILE));
-    write(&path, &text)?;
+    write_text(&path, &format!("{text}\n"))?;
     let lines = match args.json {
         true => vec![text],
         false => {
@@ -119,10 +119,10 @@ fn certified(args: &VerifyArgs, registry: &Registry) -> Result<(bool, Vec<String
     Ok((certificate.holds(), lines))
 }
 
-/// Writes the certificate, beside its place and renamed.
-fn write(path: &Path, text: &str) -> Result<(), StageError> {
+/// Writes a file of text, beside its place and renamed.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), StageError> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    write_files(folder, &[OutputFile::new(name, format!("{text}\n").into_bytes())])?;
+    write_files(folder, &[OutputFile::new(name, text.as_bytes().to_vec())])?;
     Ok(())
 }

@@ -5,6 +5,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
+mod batch;
 mod bench_costs;
 mod full_disk;
 mod interrupt;

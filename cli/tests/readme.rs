@@ -68,11 +68,13 @@ fn commands() -> Vec<Told> {
     all.filter(|told| seen.insert(told.command.clone())).collect()
 }
 
-/// Those that measure for minutes, and one that records from two whole runs.
+/// Those that measure for minutes, one that records from two whole runs, and batches.
 fn is_long(command: &str) -> bool {
-    ["toile trade", "toile tune", "toile bench", "toile golden accept"]
-        .iter()
-        .any(|start| command.starts_with(start))
+    let is_batch = command.starts_with("toile batch") && !command.contains("--check");
+    is_batch
+        || ["toile trade", "toile tune", "toile bench", "toile golden accept"]
+            .iter()
+            .any(|start| command.starts_with(start))
 }
 
 /// Those that need what another command has built.
@@ -120,6 +122,14 @@ pub(crate) fn scratch() -> tempfile::TempDir {
     }
     std::fs::copy(pipelines.join("samples/garment/vest.obj"), dir.path().join("me.obj")).unwrap();
     std::fs::write(dir.path().join("mine.dxf"), crate::own_files::drawing()).unwrap();
+    std::fs::create_dir(dir.path().join("patterns")).unwrap();
+    for name in ["shirt.json", "trousers.json"] {
+        let ours = format!("samples/pattern/{}", name.replace(".json", "_specification.json"));
+        std::fs::copy(pipelines.join(ours), dir.path().join("patterns").join(name)).unwrap();
+    }
+    let garment =
+        |id: &str| format!("{{\"id\": \"{id}\", \"set\": {{\"pattern.file\": \"patterns/{id}.json\"}}}}\n");
+    std::fs::write(dir.path().join("patterns.jsonl"), ["shirt", "trousers"].map(garment).concat()).unwrap();
     let garment = std::fs::read_to_string(pipelines.join("samples/garment/vest.obj")).unwrap();
     std::fs::write(dir.path().join("dress.obj"), in_centimetres(&garment)).unwrap();
     dir

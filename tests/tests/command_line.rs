@@ -126,3 +126,22 @@ fn a_scene_named_from_the_current_folder_is_brought_to_rest() {
     let vertices = text.lines().filter(|l| l.starts_with("v ")).count();
     assert_eq!(vertices as u64, g["vertices"].as_u64().unwrap());
 }
+
+#[test]
+fn a_batch_is_checked_anywhere_and_run_by_the_program_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    toile_tests::napkin::write(dir.path()).unwrap();
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let (manifest, pipeline, out) = (path("m.jsonl"), path("napkin.ron"), path("out"));
+    std::fs::write(&manifest, "{\"id\": \"a\"}\n").unwrap();
+    let batch = ["batch", &manifest, "--pipeline", &pipeline, "--out", &out];
+    let checked = toile(&[&batch[..], &["--check"]].concat());
+    assert_eq!((checked.code, checked.out.as_str()), (0, "1 garment: 1 to run, 0 done or not asked for\n"));
+    let answer = toile(&batch);
+    assert_eq!(answer.code, 3);
+    assert_eq!(
+        answer.err,
+        "error: a batch starts a process for each garment, which only the program can\n  help: call the command `toile`\n"
+    );
+    assert!(!dir.path().join("out").exists());
+}

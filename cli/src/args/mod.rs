@@ -1,6 +1,7 @@
 //! The arguments of every sub-command.
 
 mod amounts;
+mod batch;
 mod bench;
 pub(crate) mod color;
 mod file;
@@ -9,6 +10,7 @@ mod shared;
 mod trade;
 mod verify;
 
+pub(crate) use batch::{BatchArgs, ManifestArgs, Shard};
 pub(crate) use bench::{BenchCommand, CostsArgs};
 pub(crate) use file::{
     AcceptArgs, CheckArgs, DoctorArgs, LockArgs, MigrateArgs, NewStageArgs, ValidateArgs, Verb,
@@ -45,6 +47,10 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Run a pipeline and write its files
     Run(RunArgs),
+    /// Run a pipeline for every garment of a manifest, and go on where it was stopped
+    Batch(BatchArgs),
+    /// Write a manifest for `batch` from files or from a CSV table
+    Manifest(ManifestArgs),
     /// Check pipelines without running them
     Validate(ValidateArgs),
     /// List every stage
@@ -94,6 +100,9 @@ pub(crate) enum Command {
     /// standard output
     #[command(hide = true)]
     RunApart,
+    /// One garment of a batch in a process of its own, in the same way
+    #[command(hide = true)]
+    RunGarment,
     /// Keep goldens: text sheets of measures for every edge of a pipeline
     Golden {
         #[command(subcommand)]

@@ -17,23 +17,45 @@ pub(crate) fn with_plugins(program: Apart, plugins: &[PathBuf]) -> Apart {
 /// The program to be started once more, for another of its commands, with the same plugins.
 pub(crate) fn again(program: Option<&Apart>) -> Command {
     let mut command = Command::new(program.map_or_else(PathBuf::new, |p| p.program.clone()));
-    let plugins = program.and_then(|p| p.arguments.split_last()).map(|(_, plugins)| plugins);
-    command.args(plugins.unwrap_or_default());
+    command.args(program.map_or(&[][..], plugins));
     command
 }
 
-/// Runs the task on the first line of standard input. The rest of the input stays open while the
-/// parent runs: if it ends before the answer, the parent has ended and the task stops.
-pub(crate) fn run(registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+/// The program as it runs another command with the same plugins.
+pub(crate) fn for_command(program: &Apart, command: &str) -> Apart {
+    let arguments = plugins(program).iter().cloned().chain([command.into()]).collect();
+    Apart { arguments, program: program.program.clone() }
+}
+
+/// The arguments that name plugins.
+fn plugins(program: &Apart) -> &[OsString] {
+    program.arguments.split_last().map_or(&[], |(_, plugins)| plugins)
+}
+
+/// The task of a process of its own: the first line of standard input. The rest of the input stays
+/// open while the parent runs: if it ends before the answer, the parent has ended and this process
+/// ends, too.
+///
+/// Errors: a sentence.
+pub(crate) fn task() -> Result<String, String> {
     let (mut input, mut line) = (BufReader::new(stdin()), String::new());
-    if let Err(e) = input.read_line(&mut line) {
-        streams.tell(format!("error: no task can be read: {e}"));
-        return exit::INVALID;
-    }
+    input.read_line(&mut line).map_err(|e| format!("no task can be read: {e}"))?;
     std::thread::spawn(move || {
         let _ = input.read(&mut [0]);
         last_words::leave(exit::STOPPED);
     });
+    Ok(line)
+}
+
+/// Runs the task of this process.
+pub(crate) fn run(registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let line = match task() {
+        Ok(line) => line,
+        Err(why) => {
+            streams.tell(format!("error: {why}"));
+            return exit::INVALID;
+        }
+    };
     let written = answer(&line, registry).and_then(|bytes| {
         streams.out.write_all(&bytes).and_then(|()| streams.out.flush()).map_err(|e| e.to_string())
     });

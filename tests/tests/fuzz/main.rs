@@ -10,6 +10,7 @@
 //! `out/fuzz/TARGET.case`.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
+mod batch;
 mod cache;
 mod dice;
 mod plugin;

@@ -7,7 +7,7 @@ pub(super) fn forget_peak() {
 }
 
 /// The high-water mark of resident memory, bytes, from the kernel's own record (Linux).
-pub(super) fn peak() -> Option<u64> {
+pub fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
     let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;

@@ -17,7 +17,8 @@ pub use ran::{Missed, Ran};
 
 use crate::measure::apart::{Apart, Task};
 use cpu_time::ProcessTime;
-use memory::{forget_peak, peak};
+use memory::forget_peak;
+pub use memory::peak;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};

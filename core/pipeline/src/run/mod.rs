@@ -49,6 +49,8 @@ pub struct RunOptions {
     pub reads: Option<Reads>,
     /// Receives what a failed run had made until then, for inspection.
     pub so_far: Option<SoFar>,
+    /// Whether it receives that of a run that was stopped, too.
+    pub so_far_of_stopped: bool,
     /// Measures what stages take; none measures nothing but wall time.
     pub meter: Option<Arc<dyn Meter>>,
     /// Predicts what stages take, for the record and the report; without it they hold no

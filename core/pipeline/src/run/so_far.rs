@@ -6,23 +6,26 @@ use super::{RunError, RunOptions};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use toile_core::artifact::{OutputFile, OutputFiles};
-use toile_core::{ArtifactType, ErrorCode, Feed, Inputs, Node, PortValue, Remarks};
+use toile_core::{ArtifactType, Cancel, ErrorCode, Feed, Inputs, Node, PortValue, Remarks};
 use toile_core::{Failure, RunLog, StageRecord};
 
 /// Takes what a run that fails has made until then.
 ///
 /// `reason.txt`; the pages of stages that report on a run, with the reason on top; and the
 /// artifacts of the stage that failed, with [`RunOptions::keep`] those of all stages. Nothing where
-/// no stage had made anything that can be shown, or the run was stopped.
+/// no stage had made anything that can be shown. Nothing either where the run was stopped, unless
+/// [`RunOptions::so_far_of_stopped`] asks for it: then the artifacts of all stages.
 pub type SoFar = Arc<Mutex<Vec<OutputFile>>>;
 
 /// Fills [`RunOptions::so_far`].
 pub(super) fn leave(run: &mut PipelineRun<'_>, options: &RunOptions, error: &RunError) {
-    let Some(sink) = options.so_far.as_ref().filter(|_| error.error.code != ErrorCode::Cancelled) else {
-        return;
-    };
+    let is_stopped = error.error.code == ErrorCode::Cancelled;
+    let is_asked = options.so_far_of_stopped || !is_stopped;
+    let Some(sink) = options.so_far.as_ref().filter(|_| is_asked) else { return };
+    // The stage that was stopped has made nothing; those before it have.
+    let keep = options.keep || is_stopped;
     // If something fails here, the user still gets the first error.
-    let files = catch_unwind(AssertUnwindSafe(|| files(run, options.keep, error))).unwrap_or_default();
+    let files = catch_unwind(AssertUnwindSafe(|| files(run, keep, error))).unwrap_or_default();
     *sink.lock().unwrap_or_else(PoisonError::into_inner) = files;
 }
 
@@ -86,7 +89,9 @@ fn is_page(node: &Node) -> bool {
 
 fn page(run: &PipelineRun<'_>, node: &Node, log: &RunLog) -> Vec<OutputFile> {
     let inputs = Inputs(vec![Some(PortValue::One(Arc::new(log.clone())))]);
-    let made = node.stage.run_ports(&inputs, &run.context(node, Arc::new(()))).unwrap_or_default();
+    // The run's own flag may be up.
+    let cx = run.context_under(Cancel::new(), node, Arc::new(()));
+    let made = node.stage.run_ports(&inputs, &cx).unwrap_or_default();
     let artifacts = made.iter().flat_map(PortValue::entries).map(|(_, artifact)| artifact);
     artifacts.filter_map(super::typed::<OutputFiles>).flat_map(|files| files.0.clone()).collect()
 }

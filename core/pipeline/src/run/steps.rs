@@ -96,7 +96,12 @@ impl PipelineRun<'_> {
     }
 
     pub(super) fn context(&self, node: &Node, listener: Arc<dyn Listener>) -> Context {
-        let cx = Context::new(&node.id, &self.pipeline.base, self.cancel.clone(), listener);
+        self.context_under(self.cancel.clone(), node, listener)
+    }
+
+    /// A context that another flag stops than that of the run.
+    pub(super) fn context_under(&self, cancel: Cancel, node: &Node, listener: Arc<dyn Listener>) -> Context {
+        let cx = Context::new(&node.id, &self.pipeline.base, cancel, listener);
         let index = self.pipeline.find(&node.id).unwrap_or_default();
         cx.with_memo(self.cache.map(|cache| Parts::of(cache, &node.card)))
             .with_allowance(self.allowance(index))

@@ -19,6 +19,7 @@ mod tests;
 mod wire;
 
 pub use child::answer;
+pub use parent::{ProcessEnd, end_in_words};
 pub(crate) use wire::Task;
 
 use std::ffi::OsString;

@@ -1,0 +1,238 @@
+//! `toile batch`: a pipeline for every garment of a manifest.
+//!
+//! ```text
+//! manifest, pipeline --plan--> garments to run --pool--> garments/ID --summary--> results.jsonl, index.html
+//! ```
+//!
+//! - `manifest`: the garments and what is wrong with their lines; `make`, `csv`, `names`: manifests
+//!   from files and tables.
+//! - `plan`: which garments are run, by the records of those that are done.
+//! - `pool`: a process a garment, within memory and time; `memory`: what Linux tells of that;
+//!   `task`: what goes in and comes out; `child`: that process from inside; `thumb`: its picture.
+//! - `keep`: what came of a garment, put into its place with its `record`; `folder`: the output
+//!   folder and its locks.
+//! - `summary`, `tally`, `page`: what all shares write together.
+//!
+//! docs/reference/batch.md has the files and their fields.
+
+pub(crate) mod child;
+mod csv;
+mod folder;
+mod keep;
+pub(crate) mod make;
+mod manifest;
+mod memory;
+mod names;
+mod page;
+mod plan;
+mod pool;
+mod record;
+mod summary;
+mod tally;
+mod task;
+mod thumb;
+
+use crate::args::{BatchArgs, Overrides};
+use crate::failing::fail_load;
+use crate::terminal::{interrupt, stdin, threads};
+use crate::trading::apart;
+use crate::validate::open;
+use crate::{Streams, at_hand, exit};
+use folder::BatchFolder;
+use keep::GarmentKeeper;
+use manifest::{GarmentLine, LineFault};
+use plan::BatchPlan;
+use pool::PoolLimits;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use tally::BatchTally;
+use toile_core::{Registry, StageError};
+use toile_pipeline::Faults;
+
+/// The most faults of a manifest that are shown.
+const MOST_FAULTS: usize = 100;
+
+/// Runs the garments of a share that are not done yet.
+pub(crate) fn batch(args: &BatchArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    if let Err(e) = stdin::refused(&args.pipeline, "is read again by every garment") {
+        return streams.refuse(args.json, e);
+    }
+    let bytes = match toile_core::read_file(&args.manifest) {
+        Ok(bytes) => bytes,
+        Err(e) => {
+            let name = args.manifest.display();
+            return streams.refuse(args.json, format!("cannot read the manifest \"{name}\": {e}"));
+        }
+    };
+    let (garments, mut faults) = manifest::parse(&bytes);
+    let folders = [folder_of(&args.manifest), folder_of(&args.pipeline)];
+    let gone = manifest::missing(&garments, folders.each_ref().map(PathBuf::as_path));
+    let is_whole = |g: &GarmentLine| gone.iter().all(|fault| fault.line != g.line);
+    let garments: Vec<GarmentLine> = garments.iter().filter(|g| is_whole(g)).cloned().collect();
+    faults.extend(gone);
+    faults.sort_by_key(|fault| fault.line);
+    if !faults.is_empty() {
+        tell_faults(args, &faults, streams);
+        if !args.skip_faulty || garments.is_empty() {
+            return exit::INVALID;
+        }
+    }
+    if let Some(id) = args.only.iter().find(|id| garments.iter().all(|g| g.id != **id)) {
+        return streams.refuse(args.json, format!("the manifest has no garment \"{id}\""));
+    }
+    if let Err(faults) = loads(args, &folders[0], &garments, registry) {
+        return fail_load(&faults, args.json, streams);
+    }
+    let code = match planned(args, &folders[0], garments, registry, streams) {
+        Ok(code) => code,
+        Err(e) => return refused(&e, args.json, streams),
+    };
+    if faults.is_empty() { code } else { code.max(exit::INVALID) }
+}
+
+/// The full path of the folder in which a file lies.
+fn folder_of(file: &Path) -> PathBuf {
+    let full = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+    full.parent().map_or_else(|| PathBuf::from("."), Path::to_owned)
+}
+
+fn tell_faults(args: &BatchArgs, faults: &[LineFault], streams: &mut Streams<'_>) {
+    let name = args.manifest.display();
+    if args.json && !args.skip_faulty {
+        let records: Vec<_> =
+            faults.iter().map(|f| json!({ "line": f.line, "message": f.message })).collect();
+        return streams.say(json!({ "valid": false, "faults": records }));
+    }
+    let head = if args.skip_faulty { "warning" } else { "error" };
+    for fault in faults.iter().take(MOST_FAULTS) {
+        streams.tell(format!("{head}: \"{name}\", {fault}"));
+    }
+    if faults.len() > MOST_FAULTS {
+        streams.tell(format!("and {} more", faults.len() - MOST_FAULTS));
+    }
+    if !args.skip_faulty {
+        streams.tell("  help: nothing was run; mend these lines, or leave them out with --skip-faulty");
+    }
+}
+
+/// Whether the pipeline loads, by itself or for the first garment: what is wrong with every garment
+/// is said before any is run.
+fn loads(
+    args: &BatchArgs,
+    folder: &Path,
+    garments: &[GarmentLine],
+    registry: &Registry,
+) -> Result<(), Box<Faults>> {
+    match (open(&args.pipeline, &args.overrides, registry), garments.first()) {
+        (Err(_), Some(first)) => open(&args.pipeline, &overrides(args, folder, first), registry).map(drop),
+        (opened, _) => opened.map(drop),
+    }
+}
+
+/// The values of a garment, with the files that are seen from the manifest's folder.
+fn overrides(args: &BatchArgs, folder: &Path, garment: &GarmentLine) -> Overrides {
+    let own = at_hand::found_from(folder, &garment.set);
+    let set = at_hand::found(&args.overrides.set).into_iter().chain(own).collect();
+    Overrides { quality: args.overrides.quality.clone(), set }
+}
+
+fn refused(e: &StageError, json: bool, streams: &mut Streams<'_>) -> u8 {
+    match (json, &e.hint) {
+        (true, hint) => {
+            streams.say(json!({ "error": e.code.as_str(), "message": e.message, "hint": hint }));
+        }
+        (false, hint) => {
+            streams.tell(format!("error: {}", e.message));
+            hint.iter().for_each(|hint| streams.tell(format!("  help: {hint}")));
+        }
+    }
+    exit::INVALID
+}
+
+/// Runs what is to be run, and writes what all shares write together.
+fn planned(
+    args: &BatchArgs,
+    manifest_folder: &Path,
+    garments: Vec<GarmentLine>,
+    registry: &Registry,
+    streams: &mut Streams<'_>,
+) -> Result<u8, StageError> {
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stdin::stem(&args.manifest)));
+    let plan = BatchPlan::new(args, manifest_folder, &out, garments, registry)?;
+    if args.check {
+        return Ok(told_plan(args, &plan, streams));
+    }
+    let Some(program) = streams.apart.as_ref().map(|p| apart::for_command(p, "run-garment")) else {
+        return Err(StageError::invalid(
+            "a batch starts a process for each garment, which only the program can",
+        )
+        .hint("call the command `toile`"));
+    };
+    let folder = BatchFolder::open(&out, args.shard)?;
+    streams.notice(plan.words());
+    let limits = limits(args);
+    let cancel = interrupt::on_ctrl_c();
+    let mut keeper = GarmentKeeper::new(args, &plan, &folder, registry, streams, limits.jobs > 1);
+    let ran = pool::run(&program, plan.run.iter().copied(), &limits, &cancel, &mut keeper);
+    interrupt::begin_writing();
+    let tally = summary::write(&folder, &plan.garments, &plan.tickets)?;
+    if let Err(why) = ran {
+        return Err(StageError::invalid(why)
+            .hint("what was done before is kept: start the batch again, and it goes on from there"));
+    }
+    let is_stopped = cancel.is_cancelled();
+    tell_end(args, &folder, &tally, is_stopped, streams);
+    Ok(match (is_stopped, tally.faults.is_empty()) {
+        (true, _) => exit::STOPPED,
+        (false, false) => exit::QUALITY,
+        (false, true) => exit::DONE,
+    })
+}
+
+fn told_plan(args: &BatchArgs, plan: &BatchPlan, streams: &mut Streams<'_>) -> u8 {
+    match args.json {
+        true => streams.say(json!({
+            "valid": true, "garments": plan.garments.len(), "share": plan.share, "not_run": plan.not_run,
+            "to_run": plan.run.len(),
+        })),
+        false => streams.say(plan.words()),
+    }
+    exit::DONE
+}
+
+/// What garments may take.
+fn limits(args: &BatchArgs) -> PoolLimits {
+    let cores = threads::cores();
+    let free = memory::free().map_or(u64::MAX, |free| free / 10 * 9);
+    let memory = args.memory.map_or(free, |m| m.0);
+    PoolLimits {
+        cores,
+        jobs: args.jobs.map_or(cores, usize::from),
+        memory,
+        max_memory: args.max_memory.map_or(memory, |m| m.0),
+        max_time: args.max_time,
+    }
+}
+
+fn tell_end(
+    args: &BatchArgs,
+    folder: &BatchFolder,
+    tally: &BatchTally,
+    is_stopped: bool,
+    streams: &mut Streams<'_>,
+) {
+    let page = folder.root().join("index.html");
+    match args.json {
+        true => streams.say(json!({
+            "garments": tally.garments, "good": tally.good, "faults": tally.faults, "left": tally.left(),
+            "stopped": is_stopped, "folder": folder.root().display().to_string(),
+        })),
+        false => {
+            streams.report(tally.words());
+            streams.report(page.display());
+        }
+    }
+    if is_stopped {
+        streams.notice("stopped; started again, the batch goes on from here");
+    }
+}
