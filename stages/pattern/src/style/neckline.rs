@@ -10,7 +10,7 @@
 //! milliseconds. Limits: a curve that is symmetric about the middle of the neck points; a garment
 //! photographed closed and without any seam at its neck gets the usual depth, with a warning.
 
-use super::block::Layer;
+use super::block::{Layer, ellipse};
 use super::closed_front::ClosedFront;
 use super::drawn::redrawn;
 use super::replaced::replaced;
@@ -219,8 +219,7 @@ fn throat(body: &Body) -> Option<f64> {
     let (left, right) = (left?, right?);
     let (front, back) = (at("neck_base_front")?, at("neck_base_back")?);
     let (a, b) = (0.5 * (left - right).norm(), 0.5 * (front - back).norm());
-    // Ramanujan 1914.
-    Some(std::f64::consts::PI * (3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt()))
+    Some(ellipse(a, b))
 }
 
 /// A neckline: depth below the chord at `s` from -1 to 1 is `depth (1 - |s|^power)`.

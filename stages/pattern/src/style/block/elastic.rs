@@ -12,7 +12,7 @@
 //! armhole whose sleeve hangs beside the body lies folded, and is cut as deep as the arm needs it.
 
 use super::pieces;
-use super::wearable::{NARROWEST, narrow_ankle, narrower_cuff, narrower_hem, upper_arm};
+use super::wearable::{NARROWEST, narrow_ankle, narrow_wrist, narrower_cuff, narrower_hem, upper_arm};
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::flat::Side;
 use crate::style::block::template::form::Form;
@@ -25,7 +25,9 @@ const DRAWN_IN: f64 = 0.66;
 /// A rib draws a cuff in, and a fold hides of it, to no less than this share of the arm.
 const RIB: f64 = 0.6;
 /// From this share of the limb on an end is wide enough as it lies.
-const FITS: f64 = 0.85;
+const FITS: f64 = 0.95;
+/// No more than this share of a sleeve is cut off.
+const MOST_OFF: f64 = 0.3;
 /// Around such a waist the garment is narrower than its wearer by this share, as an elastic is, so
 /// that it holds; a belt draws a waist in by less; and around such a cuff it is wider.
 const HOLDS: f64 = 0.15;
@@ -81,9 +83,33 @@ fn stretched_waist(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> 
     Some([waist, wide])
 }
 
-/// Shortens legs whose hems the foot does not pass through, so that they end above it; by how much,
-/// metres. `None` where they are left as they are.
-pub(super) fn shortened_legs(fit: &mut Fit, form: &Form, body: &Body) -> Option<f64> {
+/// Shortens limbs whose narrow ends lie beyond the wearer's; what it is and why, and by how much,
+/// metres.
+pub(super) fn all_shortened(fit: &mut Fit, form: &Form, body: &Body) -> Vec<(&'static str, f64)> {
+    let legs = shortened_legs(fit, form, body)
+        .map(|by| ("the legs: no foot passes through their hems, which lie below the ankle", by));
+    let sleeves = shortened_sleeves(fit, form, body)
+        .map(|by| ("the sleeves: no hand passes through their cuffs, which lie below the wrist", by));
+    legs.into_iter().chain(sleeves).collect()
+}
+
+/// Moves the cuffs up along the underarm.
+fn shortened_sleeves(fit: &mut Fit, form: &Form, body: &Body) -> Option<f64> {
+    let k = form.underarm()?;
+    let below = narrow_wrist(form, fit, body)?;
+    for side in &mut fit.sides {
+        let along = side[k].b - side[k].a;
+        let up = along * (below / along.norm().max(f64::MIN_POSITIVE)).min(MOST_OFF);
+        side[k + 1].a -= up;
+        side[k + 1].b -= up;
+        side[k].b = side[k + 1].a;
+        side[k + 2].a = side[k + 1].b;
+    }
+    Some(below)
+}
+
+/// Moves the hems up.
+fn shortened_legs(fit: &mut Fit, form: &Form, body: &Body) -> Option<f64> {
     let k = form.at(EdgeRole::Hem).filter(|k| form.has_legs() && *k > 0)?;
     let ankle = narrow_ankle(form, fit, body)?;
     for side in &mut fit.sides {

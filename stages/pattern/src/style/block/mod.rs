@@ -52,7 +52,7 @@ pub(super) use template::piece_role::Layer;
 use template::seen::SeenCorners;
 use toile_core::prelude::*;
 pub use waist::Waist;
-pub(super) use wearable::check as check_wearable;
+pub(super) use wearable::{check as check_wearable, ellipse};
 
 /// The photos that a block is cut from.
 const FRONT: &str = Layer::Front.word();
@@ -216,11 +216,8 @@ impl Block {
                 cut * 100.0
             ));
         }
-        if let Some(by) = elastic::shortened_legs(&mut before.fit, form, body) {
-            cx.note(format!(
-                "the legs are cut {:.0} cm shorter than they lie: no foot passes through their hems",
-                by * 100.0
-            ));
+        for (what, by) in elastic::all_shortened(&mut before.fit, form, body) {
+            cx.note(format!("{:.0} cm are cut off {what}", by * 100.0));
         }
         check_wearable(name, form, &before.fit, body, seen.as_ref().map(|s| s.photo))?;
         let behind = match outlines.get(BACK).filter(|back| !lay::is_mirrored(back, front)) {
@@ -236,7 +233,7 @@ impl Block {
                 }
                 let (.., mut behind) = found;
                 elastic::all_stretched(&mut behind.fit, form, body);
-                elastic::shortened_legs(&mut behind.fit, form, body);
+                elastic::all_shortened(&mut behind.fit, form, body);
                 behind
             }
         };

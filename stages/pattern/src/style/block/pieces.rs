@@ -152,6 +152,11 @@ pub(super) fn cut_sleeve(side: &Side, form: &Form) -> Option<SleeveShape> {
     lying_sleeve(side, form, form.underarm()?).0.straightened()
 }
 
+/// The sleeve as it lies, of that side; none of a form without set-in sleeves.
+pub(super) fn lying_sleeve_of(fit: &Fit, form: &Form, side: usize) -> Option<SleeveShape> {
+    Some(lying_sleeve(&Side::of(fit, form, Layer::Front, side), form, form.underarm()?).0)
+}
+
 /// From the armpit straight to the shoulder point, metres; none of a form without set-in sleeves.
 pub(super) fn armhole(side: &Side, form: &Form) -> Option<f64> {
     let [armpit, shoulder] = lying_sleeve(side, form, form.underarm()?).0.ends()?;

@@ -32,13 +32,23 @@ impl SleeveShape {
         Some([self.underarm.0[0], self.top.last()?.0[3]])
     }
 
+    /// How long its top is.
+    pub(super) fn top_length(&self) -> f64 {
+        self.top.iter().map(Curve::length).sum()
+    }
+
+    /// Whether its underarm seam is shorter than its armhole.
+    pub(super) fn is_short(&self) -> bool {
+        self.ends().is_some_and(|[armpit, shoulder]| self.underarm.length() < (shoulder - armpit).norm())
+    }
+
     /// The sleeve straightened, as it stands off with its cap along the armhole; a short one as it
     /// lies, where it stands off. None where it has no length.
     pub(super) fn straightened(self) -> Option<Self> {
         let [armpit, shoulder] = self.ends()?;
         let cap = (shoulder - armpit).norm();
-        let lengths = [self.underarm.length(), self.top.iter().map(Curve::length).sum()];
-        if lengths[0] < cap && self.widest() >= LEAST_SHORT * cap {
+        let lengths = [self.underarm.length(), self.top_length()];
+        if self.is_short() && self.widest() >= LEAST_SHORT * cap {
             return Some(self);
         }
         let cuff = self.cuff.length();
@@ -120,5 +130,15 @@ mod tests {
         let places = [[0.25, 0.4], [0.36, 0.36], [0.44, 0.5], [0.23, 0.64]];
         let [before, after] = [sleeve(places), sleeve(places).straightened().unwrap()];
         assert_eq!((before.underarm, before.cuff), (after.underarm, after.cuff));
+    }
+
+    #[test]
+    fn a_short_sleeve_that_hangs_beside_the_body_is_cut_as_wide_as_a_cap_lets_it_be() {
+        let hangs = sleeve([[0.25, 0.46], [0.27, 0.42], [0.37, 0.44], [0.23, 0.64]]);
+        assert!(hangs.widest() < 0.12);
+        let cut = hangs.straightened().unwrap();
+        let [armpit, shoulder] = cut.ends().unwrap();
+        let cap = (shoulder - armpit).norm();
+        assert!(cut.widest() > 0.75 * cap && cut.way().unwrap().x > 0.05);
     }
 }

@@ -3,6 +3,7 @@
 //! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at
 //! its armpits, its waist and hip, and its cuffs; what a closure would open is not known.
 
+use super::pieces;
 use crate::style::block::template::bow::Bow;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
@@ -17,15 +18,13 @@ const REACH: f64 = 0.08;
 const ANKLE: f64 = 0.12;
 /// Around heel and instep a foot measures so many times as much as the ankle.
 const HEEL: f64 = 1.4;
+/// And a hand so many times as much as the wrist.
+const HAND: f64 = 1.5;
 /// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
 const UPPERMOST: f64 = 0.5;
 
 /// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
 pub(super) const NARROWEST: f64 = 0.8;
-/// A cuff whose underarm seam is shorter than this share of the upper arm goes around the armhole
-/// in part, and is wider by this share at most.
-const NEAR: f64 = 0.4;
-const OBLIQUE: f64 = 0.3;
 /// Under these names a body that was chosen for a garment keeps what that measures.
 pub(super) const KEPT: [&str; 3] = ["garment_chest", "garment_waist", "garment_hip"];
 
@@ -113,10 +112,39 @@ pub(super) fn narrower_cuff(form: &Form, fit: &Fit, body: &Body) -> Option<Girth
         below if below < 0.8 * fore => ("the forearm", elbow, wrist, below / fore),
         _ => ("the wrist", elbow, wrist, 1.0),
     };
-    let underarm = narrower[cuff - 1].length();
-    let beside = 1.0 + OBLIQUE * (1.0 - underarm / (NEAR * upper).max(f64::MIN_POSITIVE)).max(0.0);
-    let around = arm_girth(body, from, to, share)? * beside;
+    let around = arm_girth(body, from, to, share)?;
+    // A short sleeve may end farther down on one side of the arm.
+    let shape = pieces::lying_sleeve_of(fit, form, usize::from(std::ptr::eq(narrower, &fit.sides[1])))?;
+    let around = match shape.is_short() {
+        true => oblique(around, along - shape.top_length()),
+        false => around,
+    };
     Some(Girth { what: "narrower cuff", garment: 2.0 * narrower[cuff].length(), of_body, body: around })
+}
+
+/// Around a limb of that girth that is cut aslant, farther down on one side by so much.
+fn oblique(girth: f64, by: f64) -> f64 {
+    let radius = girth / std::f64::consts::TAU;
+    ellipse(radius, radius.hypot(0.5 * by))
+}
+
+/// The length of an ellipse of these half axes (Ramanujan 1914).
+pub(in crate::style) fn ellipse(a: f64, b: f64) -> f64 {
+    std::f64::consts::PI * (3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt())
+}
+
+/// How far the cuffs of sleeves lie below the wrists, where they are too narrow for the hand,
+/// metres.
+pub(super) fn narrow_wrist(form: &Form, fit: &Fit, body: &Body) -> Option<f64> {
+    let k = form.underarm()?;
+    let mark = |name: &str| body.landmark(name, Hand::Left);
+    let (shoulder, elbow, wrist) = (mark("shoulder")?, mark("elbow")?, mark("wrist")?);
+    let arm = (elbow - shoulder).norm() + (wrist - elbow).norm();
+    let armpit = mark("armpit").map_or(0.0, |p| (p - shoulder).dot(&(elbow - shoulder).normalize()));
+    let narrower = fit.sides.iter().min_by(|a, b| a[k + 1].length().total_cmp(&b[k + 1].length()))?;
+    let below = armpit.max(0.0) + narrower[k].length() - arm;
+    let passes = 2.0 * narrower[k + 1].length() > HAND * arm_girth(body, elbow, wrist, 1.0)?;
+    (below > 0.0 && !passes).then_some(below)
 }
 
 /// The narrower hem of two legs beside the leg where it ends: as far below the waist as the outseam
