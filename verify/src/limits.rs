@@ -22,7 +22,8 @@ pub struct CheckLimits {
     pub depth: f64,
     /// The greatest share of the vertices that get faster than 5 mm/s when the garment is let go.
     pub moving: f64,
-    /// The farthest that the garment moves when it is let go, but for a share of its vertices, metres.
+    /// The farthest that the garment moves when it is let go, but for a share of its vertices,
+    /// metres.
     pub shift: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Whether a garment is at rest, where its fabric and its friction are known.
 //!
-//! The engine lets it go where it is (`released`): how fast it gets, and how far it goes until it is
-//! at rest.
+//! The engine lets it go where it is (`released`): how fast it gets, and how far it goes until it
+//! is at rest.
 
 use crate::released::{NON_STATIC, Released, released};
 use crate::subject::KnownCloth;

@@ -59,8 +59,8 @@ pub struct DxfPattern {
     /// The unit of the file's numbers.
     #[param(default = DrawingUnit::Auto)]
     pub unit: DrawingUnit,
-    /// The encoding of names, such as `windows-1251` or `shift_jis`; empty for the one that the file
-    /// says.
+    /// The encoding of names, such as `windows-1251` or `shift_jis`; empty for the one that the
+    /// file says.
     #[param(default = String::new())]
     pub encoding: String,
     /// The file with the seams, relative to the pipeline; empty where they are to be proposed.

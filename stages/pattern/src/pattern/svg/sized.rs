@@ -1,8 +1,8 @@
 //! One size of a drawing that has a layer or a group for each.
 //!
 //! The layers and groups of that name are read; of those beside them, in the same layer or group,
-//! the others are left out. Cost: one walk of the tree. Limit: what is the same in all sizes must be
-//! in the layer of each.
+//! the others are left out. Cost: one walk of the tree. Limit: what is the same in all sizes must
+//! be in the layer of each.
 
 use super::damage::SvgDamage;
 use super::drawing::{Local, local, name};

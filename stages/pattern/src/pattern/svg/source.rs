@@ -1,9 +1,9 @@
 //! The bytes of a file as a tree of elements, bounded in size.
 //!
-//! The letters are in the encoding that is asked for, else that of the byte order mark, else that of
-//! the XML declaration, else UTF-8. Cost: linear. Limits: 32 MB; a million nodes. Entities of the document's own type
-//! declaration are expanded, as Illustrator writes some; depth and number of their expansions are
-//! bounded by `roxmltree`, external ones are not read.
+//! The letters are in the encoding that is asked for, else that of the byte order mark, else that
+//! of the XML declaration, else UTF-8. Cost: linear. Limits: 32 MB; a million nodes. Entities of
+//! the document's own type declaration are expanded, as Illustrator writes some; depth and number
+//! of their expansions are bounded by `roxmltree`, external ones are not read.
 
 use super::super::letters::{decoded, encoding};
 use super::damage::{SvgDamage, SvgPlace};

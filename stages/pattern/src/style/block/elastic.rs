@@ -28,12 +28,14 @@ const RIB: f64 = 0.6;
 const FITS: f64 = 0.95;
 /// No more than this share of a sleeve is cut off.
 const MOST_OFF: f64 = 0.3;
-/// Around such a waist the garment is narrower than its wearer by this share, as an elastic is, so
-/// that it holds; a belt draws a waist in by less; and around such a cuff it is wider.
-const HOLDS: f64 = 0.15;
+/// Around such a waist the garment is narrower than its wearer by this share, so that it holds, and
+/// no more, since it would be drawn up into the fork; a belt draws a waist in by less; and around
+/// such a cuff it is wider.
+const HOLDS: f64 = 0.06;
 const BELT: f64 = 0.03;
-/// A belt draws in a waist that is wider than the wearer's by no more than this share.
-const MOST_BELT: f64 = 0.4;
+/// A belt draws in a waist that is wider than the wearer's by these shares: less holds at the hip,
+/// and more is another's.
+const BELTED: [f64; 2] = [0.08, 0.4];
 const EASE: f64 = 0.03;
 /// Half an armhole, from the armpit straight to the shoulder point, is no shorter than this share
 /// of the upper arm's girth: an armhole is some 40 % longer than the upper arm is around (Aldrich
@@ -58,18 +60,18 @@ pub(super) fn all_stretched(fit: &mut Fit, form: &Form, body: &Body) -> Vec<(&'s
     [waist, armhole, cuffs, hems].into_iter().flatten().collect()
 }
 
-/// Cuts the waist of trousers as it is worn: what lies drawn in is widened to the wearer's, and what
-/// is wider than that is drawn in, as a belt does it; both girths, metres, before and after. `None`
-/// where the waist is left as it is.
+/// Cuts the waist of trousers as it is worn: what lies drawn in is widened to the wearer's, and
+/// what is wider than that is drawn in, as a belt does it; both girths, metres, before and after.
+/// `None` where the waist is left as it is.
 fn stretched_waist(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
     let k = form.at(EdgeRole::Waist).filter(|k| *k > 0 && form.has_legs())?;
     let waist = 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
     let (hip, needed) = (fit.hip(form)?, *body.measurements.get("waist")?);
-    let belted = needed * (1.0 - BELT);
+    let [least, most] = BELTED.map(|share| needed * (1.0 + share));
     let wide = if is_drawn_in(form, waist, hip) && waist < NARROWEST * needed {
         (needed * (1.0 - HOLDS)).min(hip)
-    } else if waist > belted && waist < (1.0 + MOST_BELT) * needed {
-        belted
+    } else if (least..most).contains(&waist) {
+        needed * (1.0 - BELT)
     } else {
         return None;
     };

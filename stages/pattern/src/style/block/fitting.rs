@@ -61,8 +61,8 @@ const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.03, 0.06]];
 const HIP: usize = 2;
 const WAIST: usize = 1;
 const WIDE_HIP: f64 = 0.12;
-/// Spreads of the hip of shorts, whose legs may flare, where it is wide, and of any legs where it is
-/// narrow: what goes between the legs gives no way.
+/// Spreads of the hip of shorts, whose legs may flare, where it is wide, and of any legs where it
+/// is narrow: what goes between the legs gives no way.
 const WIDE_SHORTS: f64 = 0.2;
 const NARROW_LEGS: f64 = 0.03;
 /// Trousers sit at the waist or lower, down to the hip: there their waist is wider.

@@ -1,13 +1,14 @@
-//! A hood: two halves, each other's mirror image, sewn to each other along the crown and to the neck.
+//! A hood: two halves, each other's mirror image, sewn to each other along the crown and to the
+//! neck.
 //!
-//! A garment with a hood that lies flat hides its neckline behind the hood: front and back are cut
-//! along the neckline of a block. A half of a hood is drawn as a tailor drafts it: a neck edge as
-//! long as half the neckline, a straight opening, and a crown that runs from the nape around the
-//! head to the opening, about three quarters as deep as the hood is high (Aldrich 2008). It is as
-//! high as it lies, within what the wearer's head lets it be. Its photo is that of the same half: the
-//! opening lies along the middle, the crown along the outline. Limits: a hood that lies beside the
-//! neck, or folded in, is cut as high as the head needs it; a third panel between the halves is
-//! not known.
+//! A garment with a hood that lies flat hides its neckline behind the hood: front and back are
+//! cut along the neckline of a block. A half of a hood is drawn as a tailor drafts it: a neck
+//! edge as long as half the neckline, a straight opening, and a crown that runs from the nape
+//! around the head to the opening, about three quarters as deep as the hood is high (Aldrich
+//! 2008). It is as high as it lies, within what the wearer's head lets it be. Its photo is that
+//! of the same half: the opening lies along the middle, the crown along the outline. Limits: a
+//! hood that lies beside the neck, or folded in, is cut as high as the head needs it; a third
+//! panel between the halves is not known.
 
 use crate::style::block::template::curve::Curve;
 use crate::style::block::template::flat::{Flat, Run, Side, straight};
@@ -115,41 +116,4 @@ pub(super) fn pose(body: &Body, hand: Hand) -> Result<Pose, StageError> {
         across: Vector3::new(0.0, 0.0, -sign),
         along: Vector3::y(),
     })
-}
-
-/// The seams of a hood: its halves along the crown, and each half to its half of the neck.
-pub(super) fn seams(pieces: &[Flat]) -> Vec<PatternSeam> {
-    let length = |piece: PieceRole, role: EdgeRole, hand: Option<Hand>| -> f64 {
-        let edges = pieces.iter().filter(|p| p.role == piece).flat_map(|p| &p.edges);
-        edges.filter(|e| (e.role, e.hand) == (role, hand)).map(|e| e.run.length()).sum()
-    };
-    let used = |piece: PieceRole, role: EdgeRole, hand: Option<Hand>, reversed: bool| EdgeUse {
-        edge: EdgeRef { panel: piece.name(), edge: role.name(hand) },
-        reversed,
-    };
-    let half = PieceRole::Hood;
-    let crown = PatternSeam {
-        name: EdgeRole::Crown.word().to_owned(),
-        kind: SeamKind::Matched,
-        sides: vec![
-            vec![used(half(Hand::Left), EdgeRole::Crown, None, false)],
-            vec![used(half(Hand::Right), EdgeRole::Crown, None, true)],
-        ],
-    };
-    let neck = |hand: Hand| {
-        // From the throat to the nape: the left half of the trunk's neck runs the other way in
-        // both layers, and so does that of the hood's right half.
-        let turned = hand == Hand::Left;
-        let trunk =
-            Layer::BOTH.map(|layer| used(PieceRole::Whole(layer), EdgeRole::Neck, Some(hand), turned));
-        let around: f64 =
-            Layer::BOTH.iter().map(|l| length(PieceRole::Whole(*l), EdgeRole::Neck, Some(hand))).sum();
-        let own = length(half(hand), EdgeRole::Joint, None);
-        PatternSeam {
-            name: format!("neck of {}", half(hand).name()),
-            kind: super::seams::kind(own, around),
-            sides: vec![trunk.to_vec(), vec![used(half(hand), EdgeRole::Joint, None, !turned)]],
-        }
-    };
-    [crown].into_iter().chain(Hand::BOTH.map(neck)).collect()
 }

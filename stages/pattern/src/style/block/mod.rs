@@ -4,10 +4,10 @@
 //! [`apart`] opens the outline between limbs that touch, [`form`] says which edges a garment has,
 //! [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the
 //! whole outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`sleeve`]
-//! straightens long sleeves, [`waist`] gathers a skirt to a band or lays it in pleats ([`pleat`]),
-//! [`front`] cuts a front in halves, [`hood`] cuts a hood, [`seams`] sews it, [`stand`] puts it around the body, if one
-//! can wear it ([`wearable`]);
-//! [`fitting`] finds a body that can. Cost: a tenth of a second a form.
+//! straightens long sleeves, [`waist`] gathers a skirt to a band or lays it in pleats
+//! ([`pleat`]), [`front`] cuts a front in halves, [`hood`] cuts a hood, [`seams`] sews it,
+//! [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body
+//! that can. Cost: a tenth of a second a form.
 
 mod apart;
 mod elastic;

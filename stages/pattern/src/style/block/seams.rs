@@ -1,6 +1,5 @@
 //! What of a block is sewn to what.
 
-use super::hood;
 use crate::style::block::template::flat::{Flat, PleatLine};
 use crate::style::block::template::form::Form;
 use crate::style::block::template::piece_role::{Layer, PieceRole};
@@ -50,7 +49,7 @@ pub(super) fn seams(pieces: &[Flat], form: &Form, fold: PleatFold) -> Vec<Patter
     }
     found.extend(pieces.iter().flat_map(|p| pleats(p, fold)));
     if form.ends_at(EdgeRole::Crown) {
-        found.extend(hood::seams(pieces));
+        found.extend(hood(pieces));
     }
     if form.has_legs() {
         found.extend(Layer::BOTH.map(rise));
@@ -76,7 +75,7 @@ fn set_in(pieces: &[Flat], trunk: PieceRole, sleeve: PieceRole, hand: Hand) -> P
 }
 
 /// How edges of these lengths are sewn together.
-pub(super) fn kind(one: f64, other: f64) -> SeamKind {
+fn kind(one: f64, other: f64) -> SeamKind {
     let differ = (one / other.max(f64::MIN_POSITIVE) - 1.0).abs();
     if differ > EASED { SeamKind::Gathered } else { SeamKind::Matched }
 }
@@ -96,6 +95,43 @@ fn pleats(piece: &Flat, fold: PleatFold) -> impl Iterator<Item = PatternSeam> + 
         let sides = vec![side(PleatLine::A(number)), side(PleatLine::B(number))];
         PatternSeam { name, kind: SeamKind::Pleat(fold), sides }
     })
+}
+
+/// The seams of a hood: its halves along the crown, and each half to its half of the neck.
+fn hood(pieces: &[Flat]) -> Vec<PatternSeam> {
+    let length = |piece: PieceRole, role: EdgeRole, hand: Option<Hand>| -> f64 {
+        let edges = pieces.iter().filter(|p| p.role == piece).flat_map(|p| &p.edges);
+        edges.filter(|e| (e.role, e.hand) == (role, hand)).map(|e| e.run.length()).sum()
+    };
+    let used = |piece: PieceRole, role: EdgeRole, hand: Option<Hand>, reversed: bool| EdgeUse {
+        edge: EdgeRef { panel: piece.name(), edge: role.name(hand) },
+        reversed,
+    };
+    let half = PieceRole::Hood;
+    let crown = PatternSeam {
+        name: EdgeRole::Crown.word().to_owned(),
+        kind: SeamKind::Matched,
+        sides: vec![
+            vec![used(half(Hand::Left), EdgeRole::Crown, None, false)],
+            vec![used(half(Hand::Right), EdgeRole::Crown, None, true)],
+        ],
+    };
+    let neck = |hand: Hand| {
+        // From the throat to the nape: the left half of the trunk's neck runs the other way in
+        // both layers, and so does that of the hood's right half.
+        let turned = hand == Hand::Left;
+        let trunk =
+            Layer::BOTH.map(|layer| used(PieceRole::Whole(layer), EdgeRole::Neck, Some(hand), turned));
+        let around: f64 =
+            Layer::BOTH.iter().map(|l| length(PieceRole::Whole(*l), EdgeRole::Neck, Some(hand))).sum();
+        let own = length(half(hand), EdgeRole::Joint, None);
+        PatternSeam {
+            name: format!("neck of {}", half(hand).name()),
+            kind: kind(own, around),
+            sides: vec![trunk.to_vec(), vec![used(half(hand), EdgeRole::Joint, None, !turned)]],
+        }
+    };
+    [crown].into_iter().chain(Hand::BOTH.map(neck)).collect()
 }
 
 /// The seam in the middle of trousers.

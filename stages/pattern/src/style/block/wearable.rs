@@ -15,9 +15,12 @@ use toile_core::prelude::*;
 const SLICE: f64 = 0.012;
 const REACH: f64 = 0.08;
 /// A leg is measured no lower than at this share of the fork's height.
-const ANKLE: f64 = 0.12;
+const ANKLE: f64 = 0.14;
 /// Around heel and instep a foot measures so many times as much as the ankle.
 const HEEL: f64 = 1.4;
+/// Up to so much farther down on one side a cuff counts as upright, metres: where a shoulder point
+/// lies is not known better.
+const SLANT: f64 = 0.05;
 /// And a hand so many times as much as the wrist.
 const HAND: f64 = 1.5;
 /// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
@@ -112,11 +115,13 @@ pub(super) fn narrower_cuff(form: &Form, fit: &Fit, body: &Body) -> Option<Girth
         below if below < 0.8 * fore => ("the forearm", elbow, wrist, below / fore),
         _ => ("the wrist", elbow, wrist, 1.0),
     };
-    let around = arm_girth(body, from, to, share)?;
+    // In the slice of a child's arm lies its trunk, too.
+    let stated = body.measurements.get("biceps").copied().unwrap_or(f64::INFINITY);
+    let around = arm_girth(body, from, to, share)?.min(stated);
     // A short sleeve may end farther down on one side of the arm.
     let shape = pieces::lying_sleeve_of(fit, form, usize::from(std::ptr::eq(narrower, &fit.sides[1])))?;
     let around = match shape.is_short() {
-        true => oblique(around, along - shape.top_length()),
+        true => oblique(around, ((along - shape.top_length()).abs() - SLANT).max(0.0)),
         false => around,
     };
     Some(Girth { what: "narrower cuff", garment: 2.0 * narrower[cuff].length(), of_body, body: around })
@@ -187,8 +192,11 @@ fn leg_girth(body: &Body, y: f64) -> Option<f64> {
     hull_girth(body.positions.iter().filter(is_of_leg).map(|p| Point2::new(p.x, p.z)).collect())
 }
 
-/// The girth of the upper arm half way down.
+/// The girth of the upper arm, as the body states it, or half way down.
 pub(super) fn upper_arm(body: &Body) -> Option<f64> {
+    if let Some(biceps) = body.measurements.get("biceps") {
+        return Some(*biceps);
+    }
     let mark = |name: &str| body.landmark(name, Hand::Left);
     arm_girth(body, mark("shoulder")?, mark("elbow")?, UPPERMOST)
 }
