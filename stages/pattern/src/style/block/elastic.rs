@@ -24,8 +24,6 @@ use toile_core::prelude::*;
 const DRAWN_IN: f64 = 0.66;
 /// A rib draws a cuff in, and a fold hides of it, to no less than this share of the arm.
 const RIB: f64 = 0.6;
-/// From this share of the limb on an end is wide enough as it lies.
-const FITS: f64 = 0.95;
 /// No more than this share of a sleeve is cut off.
 const MOST_OFF: f64 = 0.3;
 /// Around such a waist the garment is narrower than its wearer by this share, so that it holds, and
@@ -141,7 +139,7 @@ fn stretched_hems(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
 /// a limb of `body`, metres.
 fn stretched_ends(fit: &mut Fit, k: usize, garment: f64, body: f64) -> Option<[f64; 2]> {
     let wide = body * (1.0 + EASE);
-    if k == 0 || garment >= FITS * body || garment < RIB * body {
+    if k == 0 || garment >= NARROWEST * body || garment < RIB * body {
         return None;
     }
     for side in &mut fit.sides {
