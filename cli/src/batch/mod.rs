@@ -1,7 +1,8 @@
 //! `toile batch`: a pipeline for every garment of a manifest.
 //!
 //! ```text
-//! manifest, pipeline --plan--> garments to run --pool--> garments/ID --summary--> results.jsonl, index.html
+//! manifest, pipeline --plan--> garments to run --pool--> garments/ID
+//!     --summary--> results.jsonl, index.html
 //! ```
 //!
 //! - `manifest`: the garments and what is wrong with their lines; `make`, `csv`, `names`: manifests

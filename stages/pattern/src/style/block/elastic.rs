@@ -97,15 +97,17 @@ pub(super) fn all_shortened(fit: &mut Fit, form: &Form, body: &Body) -> Vec<(&'s
 fn shortened_sleeves(fit: &mut Fit, form: &Form, body: &Body) -> Option<f64> {
     let k = form.underarm()?;
     let below = narrow_wrist(form, fit, body)?;
+    let shorter = fit.sides.iter().map(|side| (side[k].b - side[k].a).norm()).fold(f64::INFINITY, f64::min);
+    let off = below.min(MOST_OFF * shorter);
     for side in &mut fit.sides {
         let along = side[k].b - side[k].a;
-        let up = along * (below / along.norm().max(f64::MIN_POSITIVE)).min(MOST_OFF);
+        let up = along * (off / along.norm().max(f64::MIN_POSITIVE));
         side[k + 1].a -= up;
         side[k + 1].b -= up;
         side[k].b = side[k + 1].a;
         side[k + 2].a = side[k + 1].b;
     }
-    Some(below)
+    Some(off)
 }
 
 /// Moves the hems up.

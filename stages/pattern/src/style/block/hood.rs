@@ -83,9 +83,10 @@ pub(super) fn half(side: &Side, head: f64, is_cut: bool) -> Flat {
     Flat::of_trunk(PieceRole::Hood(side.hand), side.alone(&edges))
 }
 
-/// How high the top of a head lies above the throat, metres; 0 of a body without a throat.
+/// How high the top of a head lies above the throat, metres; 0 of a body without a throat, or with
+/// none below its top.
 pub(super) fn head(body: &Body) -> f64 {
-    throat(body).map_or(0.0, |throat| crown(body) - throat.y)
+    throat(body).map_or(0.0, |throat| (crown(body) - throat.y).max(0.0))
 }
 
 fn throat(body: &Body) -> Option<Point3> {

@@ -182,6 +182,14 @@ fn a_hood_is_as_high_as_the_head_needs_it() {
 }
 
 #[test]
+fn a_throat_above_the_head_leaves_no_height() {
+    let mut body = body();
+    assert!((crate::style::block::hood::head(&body) - 0.24).abs() < 1e-12);
+    body.landmarks.insert("neck_base_front".to_owned(), Point3::new(0.0, 2.0, 0.08));
+    assert_eq!(crate::style::block::hood::head(&body), 0.0);
+}
+
+#[test]
 fn a_hood_needs_a_throat() {
     let front = [("front".to_owned(), outline(garment(HOODY)))].into_iter().collect();
     let mut body = body();
