@@ -124,15 +124,21 @@ impl Lying {
     fn lies(&self, outline: &Outline) -> Vec<Point2> {
         let n = outline.outer.points.len();
         let mut found = vec![None; n];
-        for edge in &outline.edges {
-            let Some(path) = self.piece.path(&edge.name) else { return Vec::new() };
+        let lengths: Vec<f64> =
+            outline.edges.iter().map(|e| polyline_length(&outline.edge_points(e))).collect();
+        let length_of = |whole: &str, edges: &[Edge]| -> f64 {
+            let parts = edges.iter().zip(&lengths).filter(|(e, _)| self.whole(&e.name) == whole);
+            parts.map(|(_, length)| length).sum()
+        };
+        for (number, edge) in outline.edges.iter().enumerate() {
+            let whole = self.whole(&edge.name);
+            let Some(path) = self.piece.path(whole) else { return Vec::new() };
+            let all = length_of(whole, &outline.edges).max(f64::MIN_POSITIVE);
+            let mut along = length_of(whole, &outline.edges[..number]);
             let points = outline.edge_points(edge);
-            let whole = polyline_length(&points);
-            let mut along = 0.0;
             for (k, p) in points.iter().enumerate() {
                 along += if k > 0 { (p - points[k - 1]).norm() } else { 0.0 };
-                let share = along / whole.max(f64::MIN_POSITIVE);
-                found[(edge.start + k) % n] = Some(self.seen(path.at(share * path.length())));
+                found[(edge.start + k) % n] = Some(self.seen(path.at(along / all * path.length())));
             }
         }
         let same = |(p, q): (&Point2, &Option<Point2>)| q.is_some_and(|q| (p - q).norm() < SAME);
@@ -140,6 +146,15 @@ impl Lying {
             return Vec::new();
         }
         found.into_iter().collect::<Option<_>>().unwrap_or_default()
+    }
+
+    /// The edge of the piece that an edge of its outline is, or is one of the numbered parts of.
+    fn whole<'a>(&self, name: &'a str) -> &'a str {
+        let is_number = |part: &str| part.trim_end_matches('\'').parse::<usize>().is_ok();
+        match name.rsplit_once('_') {
+            Some((whole, part)) if self.piece.path(name).is_none() && is_number(part) => whole,
+            _ => name,
+        }
     }
 
     /// Where a point of the piece is seen.
