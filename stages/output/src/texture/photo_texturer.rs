@@ -109,7 +109,7 @@ pub enum WrongSide {
 /// beside that place go on.
 #[stage(
     role = Texturer,
-    version = 9,
+    version = 10,
     source = "garment modelling thesis, 2012: replace and modulate; Land, McCann 1971 and Grosse and others 2009: light apart from colour; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)

@@ -88,6 +88,8 @@ const BORDERS: [PartBorder; 3] = [
 pub(super) struct OpenedOutline {
     pub outline: Outline,
     pub what: Vec<&'static str>,
+    /// How many sleeves were.
+    pub sleeves: usize,
     /// The share of the outline's area, before, that is surely ground.
     pub ground: f64,
 }
@@ -98,7 +100,7 @@ pub(super) fn opened(outline: &Outline, seen: &SeenGarment) -> Option<OpenedOutl
     let frame = outline.frame?;
     let mut points = outline.outer.points.clone();
     let size = polygon_area(&points).abs().sqrt();
-    let mut what = Vec::new();
+    let (mut what, mut sleeves) = (Vec::new(), 0);
     let bare = |points: &[Point2]| {
         ground(points, LEAST_PATCH * size * size, |p| {
             let px = frame.to_px(p);
@@ -133,6 +135,7 @@ pub(super) fn opened(outline: &Outline, seen: &SeenGarment) -> Option<OpenedOutl
             let Some(opened) = parted(&points, &wedge.along(&way, &is_within, &is_ground)) else { continue };
             points = opened;
             what.push(words);
+            sleeves += usize::from(matches!(limb, Limb::SleeveLeft | Limb::SleeveRight));
         }
     }
     let left = bare(&points);
@@ -141,7 +144,12 @@ pub(super) fn opened(outline: &Outline, seen: &SeenGarment) -> Option<OpenedOutl
         what.push("the garment and the ground");
     }
     let outer = Loop { points, corners: Vec::new() };
-    (!what.is_empty()).then(|| OpenedOutline { outline: Outline { outer, ..outline.clone() }, what, ground })
+    (!what.is_empty()).then(|| OpenedOutline {
+        outline: Outline { outer, ..outline.clone() },
+        what,
+        sleeves,
+        ground,
+    })
 }
 
 /// The cells within a closed line that are surely ground, of patches of that area at least; each is

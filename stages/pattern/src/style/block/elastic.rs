@@ -13,6 +13,7 @@
 
 use super::pieces;
 use super::wearable::{NARROWEST, narrow_ankle, narrow_wrist, narrower_cuff, narrower_hem, upper_arm};
+use crate::style::block::template::bow::Bow;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::flat::Side;
 use crate::style::block::template::form::Form;
@@ -23,7 +24,10 @@ use toile_core::prelude::*;
 /// garments are cut straighter than bodies.
 const DRAWN_IN: f64 = 0.66;
 /// A rib draws a cuff in, and a fold hides of it, to no less than this share of the arm.
-const RIB: f64 = 0.6;
+const RIB: f64 = 0.5;
+/// The cuff of a short sleeve that is narrower than this share of the arm is cut wider: the armhole
+/// beside it does not give way.
+const SHORT_CUFF: f64 = 0.9;
 /// No more than this share of a sleeve is cut off.
 const MOST_OFF: f64 = 0.3;
 /// Around such a waist the garment is narrower than its wearer by this share, so that it holds, and
@@ -34,6 +38,9 @@ const BELT: f64 = 0.03;
 /// A belt draws in a waist that is wider than the wearer's by these shares: less holds at the hip,
 /// and more is another's.
 const BELTED: [f64; 2] = [0.08, 0.4];
+/// A waist that is wider than this share of the wearer's hip slides over it: children's are hardly
+/// narrower than their hips.
+const HELD: f64 = 0.88;
 const EASE: f64 = 0.03;
 /// Half an armhole, from the armpit straight to the shoulder point, is no shorter than this share
 /// of the upper arm's girth: an armhole is some 40 % longer than the upper arm is around (Aldrich
@@ -66,8 +73,11 @@ fn stretched_waist(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> 
     let waist = 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
     let (hip, needed) = (fit.hip(form)?, *body.measurements.get("waist")?);
     let [least, most] = BELTED.map(|share| needed * (1.0 + share));
+    let held = HELD * body.measurements.get("hip").copied().unwrap_or(f64::INFINITY);
     let wide = if is_drawn_in(form, waist, hip) && waist < NARROWEST * needed {
         (needed * (1.0 - HOLDS)).min(hip)
+    } else if held < needed && (held..least).contains(&waist) {
+        held * (1.0 - BELT)
     } else if (least..most).contains(&waist) {
         needed * (1.0 - BELT)
     } else {
@@ -126,9 +136,47 @@ fn shortened_legs(fit: &mut Fit, form: &Form, body: &Body) -> Option<f64> {
 /// Widens cuffs that no one could wear as they lie to the wearer's arm; girths of
 /// the narrower one, metres, before and after. `None` where they are left as they are.
 fn stretched_cuffs(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2]> {
-    let k = form.underarm()? + 1;
+    let k = form.underarm()?;
     let narrower = narrower_cuff(form, fit, body)?;
-    stretched_ends(fit, k, narrower.garment, narrower.body)
+    match is_short(fit, form) {
+        true => lowered_cuffs(fit, k, narrower.garment, narrower.body),
+        false => stretched_ends(fit, k + 1, narrower.garment, narrower.body),
+    }
+}
+
+fn is_short(fit: &Fit, form: &Form) -> bool {
+    (0..2).any(|side| pieces::lying_sleeve_of(fit, form, side).is_some_and(|shape| shape.is_short()))
+}
+
+/// Widens the cuffs of short sleeves by lowering their underarm seams along the sides: the seam of
+/// number `k` keeps its length, and the armhole becomes deeper by as much.
+fn lowered_cuffs(fit: &mut Fit, k: usize, garment: f64, body: f64) -> Option<[f64; 2]> {
+    let wide = 0.5 * body * (1.0 + EASE);
+    if k == 0 || garment >= SHORT_CUFF * body || garment < RIB * body {
+        return None;
+    }
+    for side in &mut fit.sides {
+        let (cuff, down) = (side[k + 1].a - side[k + 1].b, side[k - 1].a - side[k - 1].b);
+        let most = LOWEST * down.norm();
+        let Some(down) = down.try_normalize(1e-9) else { continue };
+        let along = cuff.dot(&down);
+        let by = (along * along - cuff.norm_squared() + wide * wide).max(0.0).sqrt() - along;
+        if cuff.norm() < wide {
+            lower(side, k, down * by.clamp(0.0, most), true);
+        }
+    }
+    let narrower = fit.sides.iter().map(|side| 2.0 * side[k + 1].length()).fold(f64::INFINITY, f64::min);
+    (narrower > garment + 1e-3).then_some([garment, narrower])
+}
+
+/// Moves the armpit where edge `k` begins, and with it the underarm's end at the cuff.
+fn lower(side: &mut [Bow], k: usize, by: Vector2, with_cuff: bool) {
+    side[k].a += by;
+    side[k - 1].b = side[k].a;
+    if with_cuff {
+        side[k].b += by;
+        side[k + 1].a = side[k].b;
+    }
 }
 
 /// The same of the hems of legs.
@@ -167,6 +215,7 @@ fn stretched_armholes(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2
     };
     let narrower = |fit: &Fit| Some(2.0 * chord(fit, 0)?.min(chord(fit, 1)?));
     let before = narrower(fit)?;
+    let with_cuffs = is_short(fit, form);
     for side in 0..2 {
         let [low, armpit] = [fit.sides[side][k - 1].a, fit.sides[side][k].a];
         for _ in 0..LOWERINGS {
@@ -177,9 +226,7 @@ fn stretched_armholes(fit: &mut Fit, form: &Form, body: &Body) -> Option<[f64; 2
                 break;
             }
             let down = (low - armpit).try_normalize(1e-9)?;
-            let at = fit.sides[side][k].a + down * by;
-            fit.sides[side][k].a = at;
-            fit.sides[side][k - 1].b = at;
+            lower(&mut fit.sides[side], k, down * by, with_cuffs);
         }
     }
     let after = narrower(fit)?;

@@ -117,7 +117,7 @@ const SPREAD: f64 = 4.0;
 /// it was taken for. State a body of your own where you know the wearer.
 #[stage(
     role = Body,
-    version = 10,
+    version = 11,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -180,7 +180,9 @@ impl Fitting {
         let cost = |s: &[f64; 4]| tape.cost(s);
         let best = SIZES.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(&SIZES[16]);
         let [height, bust, waist, usual] = *best;
-        let cut_for = tape.girths[HIP].filter(|_| form.has_legs()).map(|g| g * 100.0 / (1.0 + EASE[HIP][0]));
+        // The hips of shorts may flare, and tell less.
+        let is_long = form.has_legs() && tape.length.is_some();
+        let cut_for = tape.girths[HIP].filter(|_| is_long).map(|g| g * 100.0 / (1.0 + EASE[HIP][0]));
         let hip = cut_for.map_or(usual, |h| h.clamp(usual, (1.0 + HIPS) * usual));
         cx.note(format!(
             "worn by a mannequin of {height:.0} cm, bust {bust:.0}, waist {waist:.0}, hip {hip:.0} cm: {} fits it",

@@ -16,6 +16,7 @@ mod front;
 mod hood;
 mod lay;
 mod leftover;
+mod leg;
 mod likely;
 mod pieces;
 mod pleat;
@@ -70,6 +71,10 @@ const LANDMARKS: f64 = 0.3;
 const OPENED: f64 = 0.4;
 /// What ground within an outline adds, for each whole of its area.
 const GROUND: f64 = 10.0;
+
+/// What a template without sleeves of their own adds for each sleeve that the network sees lie
+/// against the body.
+const SLEEVE_SEEN: f64 = 0.4;
 
 /// And for a template that is judged by one half: there is less to tell it by.
 const HALF: f64 = 0.7;
@@ -146,7 +151,7 @@ impl BlockStyle {
 /// is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 11,
+    version = 12,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -242,7 +247,12 @@ impl Block {
         pattern(
             form,
             &layers,
-            Making { waist: self.waist, front: self.front, head: hood::head(body) },
+            Making {
+                waist: self.waist,
+                front: self.front,
+                head: hood::head(body),
+                rise: wearable::rise(body),
+            },
             body,
             cx,
         )
@@ -346,7 +356,9 @@ impl Block {
         };
         match (whole, apart) {
             (Ok(whole), Ok(apart)) => {
-                let is_better = price(&apart) + OPENED < price(&whole) + GROUND * opened.ground;
+                let has_none = whole.1.underarm().is_none();
+                let unseen = if has_none { SLEEVE_SEEN * opened.sleeves as f64 } else { 0.0 };
+                let is_better = price(&apart) + OPENED < price(&whole) + GROUND * opened.ground + unseen;
                 Ok(if is_better { apart } else { whole })
             }
             (whole, apart) => whole.or(apart),

@@ -10,12 +10,12 @@
 
 use super::front::{self, Front};
 use super::hood;
+use super::leg;
 use super::sleeve::SleeveShape;
 use super::waist::{self, Waist};
-use crate::mesh::crossing::first_crossing;
 use crate::style::block::template::curve::Curve;
-use crate::style::block::template::fit::{Fit, SEAT, SHORT};
-use crate::style::block::template::flat::{Flat, FlatEdge, PARTS, Run, Side, straight};
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::flat::{Flat, FlatEdge, Run, Side};
 use crate::style::block::template::form::Form;
 use crate::style::block::template::piece_role::{Layer, PieceRole};
 use toile_core::prelude::*;
@@ -33,19 +33,6 @@ const CORNER: f64 = 0.1;
 /// Controls of an armhole, to the left of its chord, in chord lengths: it runs in below and up
 /// above.
 const ARMHOLE: [f64; 2] = [0.18, 0.08];
-/// Both points of the fork, as a share of the seat's girth.
-const FORK: f64 = 0.15;
-/// Legs are long from so many times the length of the point on.
-const LONG: f64 = 6.0;
-/// The point behind lies no lower than this share of the way from hem to fork.
-const LEAST_DROP: f64 = 0.7;
-/// Controls of the rise: how far down it is straight, as a share of it, and how far out it is
-/// there, of the point; and of the inseam below the point.
-const STRAIGHT: f64 = 0.7;
-const HOLLOW: f64 = 0.15;
-const INNER: f64 = 0.15;
-/// How much of its bend an inseam keeps, tried one after another.
-const STRAIGHTENED: [f64; 3] = [1.0, 0.5, 0.0];
 
 /// How a garment is made up, beyond its outline.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +41,8 @@ pub(super) struct Making {
     pub front: Front,
     /// How high the top of the wearer's head lies above the throat, metres.
     pub head: f64,
+    /// How high the wearer's waist lies above the fork, metres.
+    pub rise: f64,
 }
 
 /// The pieces of one layer, as they are cut or as they lie in the photo.
@@ -63,7 +52,7 @@ pub(super) fn layer(fit: &Fit, form: &Form, making: Making, layer: Layer, is_cut
         return waist::gathered(&sides, layer, fullness, band.metres(), is_cut);
     }
     if form.has_legs() {
-        return sides.iter().map(|s| leg(s, layer)).collect();
+        return sides.iter().filter_map(|s| leg::leg(s, layer, making)).collect();
     }
     let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form, layer, is_cut)).collect();
     let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
@@ -213,85 +202,4 @@ fn sleeve(side: &Side, edges: &[(EdgeRole, Run)], layer: Layer) -> Option<Flat> 
         origin: cap,
         turn: way.y.atan2(way.x) - std::f64::consts::FRAC_PI_2,
     })
-}
-
-/// The layer of a leg: inseam, hem, outseam, waist, and the rise along the middle of the garment.
-///
-/// Trousers that lie flat hide what goes between the legs: the points of the fork lie folded under
-/// the other leg. A block gives them 15 % of the seat's girth, a third of it before and two behind
-/// (Aldrich 2008); what the fork shows beyond the seat's width is part of it.
-fn leg(side: &Side, layer: Layer) -> Flat {
-    let (low, high) = (side.edges[0].1.0[0], side.edges[side.edges.len() - 1].1.0[3]);
-    let width = |share: f64| {
-        let y = low.y + share * (high.y - low.y);
-        let sides = [EdgeRole::Outseam, EdgeRole::Hip].into_iter().filter_map(|role| side.edge(role));
-        // The one that passes there; at the corner between them both do.
-        let passes = |c: &Curve| (c.0[0].y - y) * (c.0[3].y - y) <= 0.0;
-        let mut all: Vec<Curve> = sides.collect();
-        all.sort_by_key(|c| !passes(c));
-        all.first().map_or(0.0, |c| at_height(c, y))
-    };
-    let (seat, fork) = (width(SEAT) - low.x, width(0.0) - low.x);
-    let inner = side.edges[0].1.length();
-    let outer = |role| side.edge(role).map_or(0.0, |c: Curve| c.length());
-    let are_short = inner < SHORT * (outer(EdgeRole::Outseam) + outer(EdgeRole::Hip));
-    // What the fork shows beyond the seat's width is the flare of short legs.
-    let shown = if are_short { 0.0 } else { 2.0 * (fork - seat).max(0.0) };
-    let hidden = (FORK * 4.0 * seat - shown).max(0.0);
-    let point = match layer {
-        Layer::Front => hidden / 3.0,
-        Layer::Back => hidden * (2.0 / 3.0),
-    };
-    let out = |share: f64| Vector2::new(-share * point, 0.0);
-    // The point behind lies lower, so that both inseams are of one length.
-    let foot = side.edges[0].1.0[3];
-    let before = (foot - low - Vector2::new(-hidden / 3.0, 0.0)).norm_squared();
-    let drop = (before - (foot.x - low.x + point).powi(2)).max(0.0).sqrt();
-    let tip = Point2::new(low.x - point, foot.y + drop.max(LEAST_DROP * (low.y - foot.y)));
-    // Legs that are short beside the point run straight from it.
-    let share = ((foot - low).norm() / (LONG * point).max(1e-6)).min(1.0);
-    let inner = |c: &Curve, share: f64| {
-        let straight = tip + (foot - tip) / 3.0;
-        straight + (c.0[1] + out(INNER) - straight) * share
-    };
-    // Straight down, then out to the point.
-    let rise = Curve([high, high + (low - high) * STRAIGHT, low + out(HOLLOW), tip]);
-    let all = side.edges.iter().copied().chain([(EdgeRole::Rise, rise)]);
-    let edges = |kept: f64| -> Vec<(EdgeRole, Curve)> {
-        let changed = |(role, c): (EdgeRole, Curve)| match role {
-            EdgeRole::Inseam => {
-                let even = straight(tip, foot).0[2];
-                (role, Curve([tip, inner(&c, share * kept), even + (c.0[2] - even) * kept, foot]))
-            }
-            _ => (role, c),
-        };
-        all.clone().map(changed).collect()
-    };
-    // The inseam of a leg that lies bent is straightened until it meets no other edge.
-    let tried = STRAIGHTENED.map(edges);
-    // It leaves the point downwards: the rise comes in level.
-    let falls = |edges: &[(EdgeRole, Curve)]| {
-        edges.iter().all(|(role, c)| *role != EdgeRole::Inseam || c.0[1].y < tip.y)
-    };
-    let is_sound = |edges: &&Vec<(EdgeRole, Curve)>| falls(edges) && !crosses(edges);
-    let found = tried.iter().find(is_sound).unwrap_or(&tried[STRAIGHTENED.len() - 1]);
-    let edges: Vec<_> = found.iter().map(|(role, c)| (*role, Run::Cubic(*c))).collect();
-    Flat::of_trunk(PieceRole::Leg(layer, side.hand), side.alone(&edges))
-}
-
-/// Whether a closed line of curves crosses itself.
-fn crosses(edges: &[(EdgeRole, Curve)]) -> bool {
-    let points: Vec<Point2> = edges.iter().flat_map(|(_, c)| c.points(PARTS).into_iter().skip(1)).collect();
-    let n = points.len() as u32;
-    let segments: Vec<[u32; 2]> = (0..n).map(|k| [k, (k + 1) % n]).collect();
-    first_crossing(&points, &segments).is_some()
-}
-
-/// How far out a curve lies at a height: where it passes it, or its end that is nearer.
-fn at_height(c: &Curve, y: f64) -> f64 {
-    let points = c.points(PARTS);
-    let passes = points.windows(2).find(|w| (w[0].y - y) * (w[1].y - y) <= 0.0 && w[0].y != w[1].y);
-    let nearer =
-        || points.iter().min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs())).map_or(0.0, |p| p.x);
-    passes.map_or_else(nearer, |w| w[0].x + (w[1].x - w[0].x) * (y - w[0].y) / (w[1].y - w[0].y))
 }

@@ -49,7 +49,7 @@ impl SleeveShape {
         let cap = (shoulder - armpit).norm();
         let lengths = [self.underarm.length(), self.top_length()];
         if self.is_short() && self.widest() >= LEAST_SHORT * cap {
-            return Some(self);
+            return Some(self.even());
         }
         let cuff = self.cuff.length();
         let wide = self.widest().clamp(WIDE[0] * cap, WIDE[1] * cap);
@@ -65,6 +65,17 @@ impl SleeveShape {
             cuff: straight(inner, outer),
             top: vec![straight(outer, shoulder)],
         })
+    }
+
+    /// The sleeve with an underarm seam that is no longer than its top: a short sleeve that hangs
+    /// lies folded along its top.
+    fn even(self) -> Self {
+        let [under, top] = [self.underarm.length(), self.top_length()];
+        if under <= top {
+            return self;
+        }
+        let [underarm, _] = self.underarm.parted(top / under);
+        SleeveShape { underarm, cuff: straight(underarm.0[3], self.cuff.0[3]), top: self.top }
     }
 
     /// From the middle of the cap to that of the cuff.
@@ -130,6 +141,13 @@ mod tests {
         let places = [[0.25, 0.4], [0.36, 0.36], [0.44, 0.5], [0.23, 0.64]];
         let [before, after] = [sleeve(places), sleeve(places).straightened().unwrap()];
         assert_eq!((before.underarm, before.cuff), (after.underarm, after.cuff));
+    }
+
+    #[test]
+    fn a_short_sleeve_is_no_longer_under_the_arm_than_along_its_top() {
+        let cut = sleeve([[0.2, 0.4], [0.2, 0.31], [0.33, 0.36], [0.31, 0.39]]).straightened().unwrap();
+        assert!((cut.underarm.length() - cut.top_length()).abs() < 1e-9);
+        assert_eq!(cut.cuff.0[3], Point2::new(0.33, 0.36));
     }
 
     #[test]

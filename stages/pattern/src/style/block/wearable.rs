@@ -25,6 +25,8 @@ const SLANT: f64 = 0.05;
 const HAND: f64 = 1.5;
 /// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
 const UPPERMOST: f64 = 0.5;
+/// An armhole is longer than the upper arm is around by this share (Aldrich 2008).
+const ARMHOLE: f64 = 0.4;
 
 /// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
 pub(super) const NARROWEST: f64 = 0.8;
@@ -121,7 +123,10 @@ pub(super) fn narrower_cuff(form: &Form, fit: &Fit, body: &Body) -> Option<Girth
     // A short sleeve may end farther down on one side of the arm.
     let shape = pieces::lying_sleeve_of(fit, form, usize::from(std::ptr::eq(narrower, &fit.sides[1])))?;
     let around = match shape.is_short() {
-        true => oblique(around, ((along - shape.top_length()).abs() - SLANT).max(0.0)),
+        true => {
+            let rooted = around * (1.0 + ARMHOLE * (1.0 - along / upper / UPPERMOST).max(0.0));
+            oblique(rooted, ((along - shape.top_length()).abs() - SLANT).max(0.0))
+        }
         false => around,
     };
     Some(Girth { what: "narrower cuff", garment: 2.0 * narrower[cuff].length(), of_body, body: around })
@@ -181,6 +186,12 @@ pub(super) fn narrow_ankle(form: &Form, fit: &Fit, body: &Body) -> Option<f64> {
     let below = ankle - end_of_leg(form, narrower, body)?;
     let passes = 2.0 * narrower[hem].length() > HEEL * leg_girth(body, ankle)?;
     (below > 0.0 && !passes).then_some(below)
+}
+
+/// How high the waist lies above the fork, metres; 0 of a body that does not say where they are.
+pub(super) fn rise(body: &Body) -> f64 {
+    let height = |name: &str| body.landmarks.get(name).map(|p| p.y);
+    height("waist_front").zip(height("crotch")).map_or(0.0, |(waist, fork)| (waist - fork).max(0.0))
 }
 
 /// The girth of the left leg at a height below the fork and above the foot.

@@ -130,7 +130,7 @@ pub(crate) const TEE: Form = Form {
         HEM,
         SIDE,
         own(EdgeRole::Underarm, [-35.0, 30.0], [0.0, 0.08], [0.02, 0.45]),
-        own(EdgeRole::Cuff, [55.0, 25.0], [0.0, 0.05], [0.12, 0.5]),
+        own(EdgeRole::Cuff, [55.0, 25.0], [0.0, 0.05], [0.16, 0.5]),
         edge(EdgeRole::Top, [145.0, 20.0], [0.0, 0.06], [0.1, 0.7]),
         SHOULDER,
         NECK,

@@ -164,8 +164,7 @@ fn a_hood_is_two_halves_sewn_along_the_crown_and_to_the_neck() {
     // middle of its crown that of the border.
     assert!(o.edge("joint").is_none());
     let seen = |k: usize| o.frame.unwrap().to_px(o.lies[k]);
-    let [front, crown, opening] =
-        ["joint_1", "crown", "face"].map(|name| seen(o.edge(name).unwrap().start));
+    let [front, crown, opening] = ["joint_1", "crown", "face"].map(|name| seen(o.edge(name).unwrap().start));
     assert!((front.x - 500.0).abs() < 5.0 && (crown.x - opening.x).abs() > 50.0, "{front} {crown}");
     assert!((opening.x - 500.0).abs() < 5.0 && front.y - opening.y > 240.0, "{front} {opening}");
     let left = pattern.piece("left_hood_front").unwrap();

@@ -50,3 +50,17 @@ fn legs_with_narrow_hems_end_above_the_foot() {
     let outseam = |pattern: &Pattern| length(pattern, "left_leg_front", "outseam");
     assert!(outseam(&narrow) < outseam(&wide) - 20.0);
 }
+
+#[test]
+fn both_inseams_of_short_shorts_are_of_one_length() {
+    let shorts: &[[f64; 2]] = &[[0.0, 130.0], [30.0, 0.0], [330.0, 60.0], [220.0, 350.0], [0.0, 350.0]];
+    let (pattern, ..) = cut(&of(BlockStyle::Trousers), garment(shorts)).unwrap();
+    let [front, back] = ["front", "back"].map(|layer| {
+        let leg = format!("left_leg_{layer}");
+        ["inseam", "hem"].map(|edge| length(&pattern, &leg, edge))
+    });
+    assert!((front[0] / back[0] - 1.0).abs() < 0.03, "{} and {}", front[0], back[0]);
+    // What one hem is let out, the other is taken in.
+    assert!(back[1] > front[1] + 20.0, "{} and {}", front[1], back[1]);
+    assert!((front[1] + back[1] - 2.0 * between(shorts, 1)).abs() < 12.0, "{} and {}", front[1], back[1]);
+}
