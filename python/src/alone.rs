@@ -28,14 +28,25 @@ impl StageAlone {
         let registry = registry(py)?;
         let card = card(&registry, name).map_err(|(message, help)| misused(py, message, help))?;
         let mut arguments = Vec::new();
-        for given in settings(py, parameters)? {
+        let texts: Vec<Option<String>> =
+            parameters.iter().map(|(_, json)| serde_json::from_str(json).ok()).collect();
+        for (mut given, text) in settings(py, parameters)?.into_iter().zip(texts) {
             let param = card.params.iter().find(|p| p.name == given.path);
             let Some(param) = param else {
                 let names: Vec<&str> = card.params.iter().map(|p| p.name).collect();
                 let help = toile_core::hint(&given.path, &format!("`{name}` has"), &names);
                 return Err(misused(py, format!("unknown parameter `{}`", given.path), help));
             };
-            param.check.run(&given.value, param).map_err(|fault| misused(py, fault.message, fault.hint))?;
+            let checked = param.check.run(&given.value, param);
+            // Where a text is wanted, one that would be a name or a number in RON is a text.
+            if let (true, Some(text)) = (checked.is_err(), text) {
+                given.value = format!("{text:?}");
+            }
+            param
+                .check
+                .run(&given.value, param)
+                .or(checked)
+                .map_err(|fault| misused(py, fault.message, fault.hint))?;
             arguments.push(format!("{}: {}", given.path, given.value));
         }
         let made = registry.make(&card, &format!("({})", arguments.join(", ")));

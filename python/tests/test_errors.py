@@ -17,7 +17,8 @@ def told(error: pytest.ExceptionInfo[toile.Error]) -> tuple[str, str | None]:
 
 def test_a_fault_of_the_file_has_its_place(tmp_path: Path) -> None:
     file = tmp_path / "wrong.ron"
-    file.write_text('(\n    photos: {"front": (file: "front.jpg", width: "52 cm")},\n    stages: [Otsuu(), Kanny()],\n)\n')
+    photo = PHOTO.parent / "samples/tshirt/front.jpg"
+    file.write_text(f'(\n    photos: {{"front": (file: "{photo}", width: "52 cm")}},\n    stages: [Otsuu(), Kanny()],\n)\n')
     with pytest.raises(toile.InvalidInputError) as error:
         toile.run(file)
     assert error.value.code == "unknown_stage"
@@ -39,7 +40,7 @@ def test_a_fault_of_a_setting_is_shown_there() -> None:
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(toile.InvalidInputError) as error:
         toile.run(PATTERN, set={"pattern.file": "no_such.json"})
-    assert error.value.message == 'cannot read "no_such.json": no such file'
+    assert error.value.message == 'GarmentCode: cannot read "no_such.json": no such file'
     assert error.value.help == "paths are relative to the pipeline file"
     with pytest.raises(toile.InvalidInputError) as error:
         toile.run(tmp_path / "none.ron")

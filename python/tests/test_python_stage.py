@@ -152,7 +152,7 @@ def test_a_smoother_a_draper_a_body_and_a_writer(shirt: toile.Run, tmp_path: Pat
 
 def test_what_a_function_cannot_be() -> None:
     with pytest.raises(toile.UsageError) as error:
-        toile.stage(role="Solver")(lambda photo: photo)
+        toile.stage(role="Solver", name="Mine")(lambda photo: photo)
     assert error.value.message == "a function cannot be a stage of the role `Solver`"
     assert error.value.help == "a function may be a denoiser, binariser, smoother, body, draper, writer"
     with pytest.raises(toile.UsageError) as error:

@@ -64,7 +64,7 @@ def test_figures_and_remarks_are_those_of_the_command(shirt: toile.Run, tmp_path
     assert shirt.metrics["garment"]["converged"]
     assert shirt.shortfalls == []
     assert all(isinstance(text, str) for text in shirt.warnings + shirt.notes)
-    assert any(note.startswith("StaticEquilibrium: ") for note in shirt.notes)
+    assert any(note.startswith("Arrange: ") for note in shirt.notes)
     assert repr(shirt).startswith("<toile run of pattern: ")
 
 

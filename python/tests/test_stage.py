@@ -70,7 +70,7 @@ def test_errors_say_what_is_there() -> None:
     assert error.value.help == "did you mean `Otsu`?"
     with pytest.raises(toile.UsageError, match="unknown parameter `bais`") as error:
         toile.stage("Otsu", bais=3)
-    assert error.value.help == "did you mean `bias`?"
+    assert error.value.help == "did you mean `bias`? `Otsu` has `bias`, `garment`, `holes`, `touch`, `open`, `close`"
     with pytest.raises(toile.UsageError, match="`bias`"):
         toile.stage("Otsu", bias=1000)
     with pytest.raises(toile.UsageError, match="`Otsu` needs a photo: `photo`"):
