@@ -10,16 +10,25 @@ use toile_pipeline::cache::{Bytes, Cache, DEFAULT_LIMIT, default_folder};
 
 /// The cache that a command uses; none where it is switched off or has no place.
 pub(crate) fn chosen(choice: &CacheChoice, streams: &mut Streams<'_>) -> Option<Arc<Cache>> {
+    let (cache, told) = found(choice);
+    told.into_iter().for_each(|words| streams.warn(words));
+    cache
+}
+
+/// The cache that a command uses, and warnings about it.
+pub(crate) fn found(choice: &CacheChoice) -> (Option<Arc<Cache>>, Vec<String>) {
+    let mut told = Vec::new();
     if choice.no_cache {
-        return None;
+        return (None, told);
     }
     let cache = at(choice.cache_dir.clone());
     if cache.is_none() {
-        streams.warn(
-            "there is no place for a cache (neither TOILE_CACHE nor HOME is set); the run goes on without it",
+        told.push(
+            "there is no place for a cache (neither TOILE_CACHE nor HOME is set); the run goes on without it"
+                .into(),
         );
     }
-    cache.map(|cache| Arc::new(cache.with_limit(limit(streams))))
+    (cache.map(|cache| Arc::new(cache.with_limit(limit(&mut told)))), told)
 }
 
 /// The cache in a folder, or in that of the environment.
@@ -29,12 +38,12 @@ pub(crate) fn at(folder: Option<PathBuf>) -> Option<Cache> {
     default_folder(toile, path("XDG_CACHE_HOME"), path("HOME")).map(|folder| Cache::new(&folder))
 }
 
-fn limit(streams: &mut Streams<'_>) -> u64 {
+fn limit(told: &mut Vec<String>) -> u64 {
     let Some(text) = var_os("TOILE_CACHE_LIMIT") else { return DEFAULT_LIMIT };
     match text.to_string_lossy().parse::<Bytes>() {
         Ok(bytes) => bytes.0,
         Err(e) => {
-            streams.warn(format!("TOILE_CACHE_LIMIT: {e}"));
+            told.push(format!("TOILE_CACHE_LIMIT: {e}"));
             DEFAULT_LIMIT
         }
     }

@@ -25,7 +25,8 @@ pub(crate) fn fail_run(pipeline: &Pipeline, e: &RunError, json: bool, streams: &
     e.error.code.exit_code()
 }
 
-fn as_faults(pipeline: &Pipeline, e: &RunError) -> Faults {
+/// A stage's error as a fault of the pipeline file, at its place.
+pub(crate) fn as_faults(pipeline: &Pipeline, e: &RunError) -> Faults {
     let StageError { code, hint, .. } = &e.error;
     let fault = Fault::new(code.as_str(), e.to_string()).hint(hint.clone());
     let fault = if e.span.is_empty() { fault } else { fault.at(&e.span, code_words(*code)) };

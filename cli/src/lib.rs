@@ -7,6 +7,7 @@ mod args;
 mod at_hand;
 mod batch;
 mod cache;
+pub mod called;
 mod cards;
 mod contracts;
 mod doctor;
@@ -81,9 +82,44 @@ where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
+    as_program(registry, arguments, Apart::this_program(Vec::new()), out, err)
+}
+
+/// As [`program`], for one that another program runs, as Python runs `python -m toile`: `start` is
+/// how it is started once more, the program first.
+pub fn program_run_by<A, T>(
+    start: &[OsString],
+    registry: &Registry,
+    arguments: A,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> u8
+where
+    A: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    let apart = start.split_first().map(|(program, launch)| Apart {
+        program: program.into(),
+        launch: launch.to_vec(),
+        arguments: Vec::new(),
+    });
+    as_program(registry, arguments, apart, out, err)
+}
+
+fn as_program<A, T>(
+    registry: &Registry,
+    arguments: A,
+    apart: Option<Apart>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> u8
+where
+    A: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
     panics::quiet();
     let _alive = Alive::new();
-    started(registry, arguments, Streams::new(Apart::this_program(Vec::new()), out, err), true)
+    started(registry, arguments, Streams::new(apart, out, err), true)
 }
 
 /// Runs the command; a panic in it is reported as a bug.

@@ -1,6 +1,6 @@
 //! `toile run`.
 
-use crate::args::RunArgs;
+use crate::args::{Overrides, RunArgs};
 use crate::failing::{fail_load, fail_run};
 use crate::terminal::progress::Bar;
 use crate::trading::costs::{self, KnownCosts};
@@ -57,7 +57,10 @@ pub(crate) fn ended(
         Ok(pipeline) => pipeline,
         Err(faults) => return fail_load(&faults, args.json, streams).into(),
     };
-    tell_doubt(args, &mut pipeline, streams);
+    if let Some([warning, help]) = doubt(&args.overrides, &mut pipeline) {
+        streams.tell(format!("warning: {warning}"));
+        streams.tell(format!("  help: {help}"));
+    }
     let lock = match args.locked.then(|| lock::read(&args.pipeline)).transpose() {
         Ok(lock) => lock,
         Err(e) => return streams.refuse(args.json, e).into(),
@@ -89,6 +92,7 @@ pub(crate) fn ended(
         until: args.until.clone(),
         also: args.also.clone(),
         keep: args.keep,
+        load: Vec::new(),
         cache,
         reads: reads.cloned(),
     };
@@ -114,19 +118,25 @@ pub(crate) fn ended(
 /// Writes what a failed run has made until then into a folder of its own, so that it is not taken
 /// for a result.
 fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) -> Result<(), StageError> {
+    interrupt::begin_writing();
+    let page = left(dir, so_far).inspect_err(|e| streams.warn(e.to_string()))?;
+    if let (false, Some(page)) = (json, page) {
+        streams.tell(format!("what the run made until then: {}", page.display()));
+    }
+    Ok(())
+}
+
+/// Writes what a failed run has made until then; gives its page, or the folder where there is none.
+pub(crate) fn left(dir: &Path, so_far: &SoFar) -> Result<Option<PathBuf>, StageError> {
     let files = std::mem::take(&mut *so_far.lock().unwrap_or_else(PoisonError::into_inner));
     if files.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
     let dir = dir.join(FAILED);
     clear(&dir);
-    interrupt::begin_writing();
-    write_files(&dir, &files).inspect_err(|e| streams.warn(e.to_string()))?;
-    if !json {
-        let page = files.iter().find(|f| f.path.ends_with(".html")).map_or("", |f| f.path.as_str());
-        streams.tell(format!("what the run made until then: {}", dir.join(page).display()));
-    }
-    Ok(())
+    write_files(&dir, &files)?;
+    let page = files.iter().find(|f| f.path.ends_with(".html")).map_or("", |f| f.path.as_str());
+    Ok(Some(dir.join(page)))
 }
 
 /// The folder of a run that failed, within its output folder.
@@ -140,20 +150,20 @@ fn clear(dir: &Path) {
     }
 }
 
-/// Warns if the requested quality's error was not measured for the pipeline as it is. The metrics
-/// and the report say the same, unless they already say that `--set` changed the quality.
-fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>) {
-    let asked = args.overrides.quality.as_deref();
-    let quality = pipeline.qualities.iter().find(|q| Some(q.name.as_str()) == asked);
-    let Some((quality, words)) = quality.and_then(|q| Some((q, q.standing(pipeline).words()?))) else {
-        return;
-    };
-    let (name, error) = (&quality.name, quality.max_error);
-    streams.tell(format!("warning: quality {name}: {words}; whether it keeps {error} here is not known"));
-    streams.tell(format!("  help: `toile tune PIPELINE --quality \"{name}={error}\"` measures it"));
-    if args.overrides.set.is_empty() {
+/// What is to be said if the requested quality's error was not measured for the pipeline as it is,
+/// and how to measure it. The metrics and the report say the same, unless they already say that
+/// `--set` changed the quality.
+pub(crate) fn doubt(overrides: &Overrides, pipeline: &mut Pipeline) -> Option<[String; 2]> {
+    let asked = overrides.quality.as_deref();
+    let quality = pipeline.qualities.iter().find(|q| Some(q.name.as_str()) == asked)?;
+    let words = quality.standing(pipeline).words()?;
+    let (name, error) = (quality.name.clone(), quality.max_error);
+    let warning = format!("quality {name}: {words}; whether it keeps {error} here is not known");
+    let help = format!("`toile tune PIPELINE --quality \"{name}={error}\"` measures it");
+    if overrides.set.is_empty() {
         pipeline.quality = Some(format!("{name}, {words}"));
     }
+    Some([warning, help])
 }
 
 /// Runs with a progress line; prints the notes and warnings of the stages, then the warnings of the
@@ -204,12 +214,10 @@ fn finish(
 ) -> RunEnd {
     let dir = folder(args);
     let mut files = result.files;
-    files.push(OutputFile { path: "metrics.json".into(), bytes: result.metrics.to_json().into_bytes() });
     interrupt::begin_writing();
-    if let Err(error) = write_files(&dir, &files) {
+    if let Err(error) = written(&dir, &mut files, &result.metrics) {
         return unwritable(pipeline, error, args.json, streams);
     }
-    clear(&dir.join(FAILED));
     match args.json {
         true => streams.say(result.metrics.to_json()),
         false if streams.is_quiet() => {}
@@ -226,6 +234,15 @@ fn finish(
     RunEnd::from(if result.metrics.shortfalls.is_empty() { exit::DONE } else { exit::QUALITY })
 }
 
+/// Writes a run's files, with its metrics as one more of them, and removes what an earlier run that
+/// failed has left there.
+pub(crate) fn written(dir: &Path, files: &mut Vec<OutputFile>, metrics: &Metrics) -> Result<(), StageError> {
+    files.push(OutputFile { path: "metrics.json".into(), bytes: metrics.to_json().into_bytes() });
+    write_files(dir, files)?;
+    clear(&dir.join(FAILED));
+    Ok(())
+}
+
 /// Where the files go.
 fn folder(args: &RunArgs) -> PathBuf {
     args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stdin::stem(&args.pipeline)))
@@ -233,8 +250,12 @@ fn folder(args: &RunArgs) -> PathBuf {
 
 fn unwritable(pipeline: &Pipeline, error: StageError, json: bool, streams: &mut Streams<'_>) -> RunEnd {
     let unwritten = Some(error.clone());
-    let e = RunError { stage: "writing".into(), entry: String::new(), span: 0..0, error };
-    RunEnd { code: fail_run(pipeline, &e, json, streams), unwritten }
+    RunEnd { code: fail_run(pipeline, &of_writing(error), json, streams), unwritten }
+}
+
+/// An error of writing as one of the run.
+pub(crate) fn of_writing(error: StageError) -> RunError {
+    RunError { stage: "writing".into(), entry: String::new(), span: 0..0, error }
 }
 
 fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], streams: &mut Streams<'_>) {

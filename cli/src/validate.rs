@@ -63,10 +63,14 @@ pub(crate) fn warn_before_run(
     is_whole: bool,
     streams: &mut Streams<'_>,
 ) {
-    if let Some(mut warnings) = pipeline.warnings(registry) {
-        warnings.faults.retain(|w| w.code != "no_garment" && (is_whole || w.code != "unused"));
-        warn(&warnings, streams);
-    }
+    before_run(pipeline, registry, is_whole).iter().for_each(|w| warn(w, streams));
+}
+
+/// The warnings of [`warn_before_run`].
+pub(crate) fn before_run(pipeline: &Pipeline, registry: &Registry, is_whole: bool) -> Option<Faults> {
+    let mut warnings = pipeline.warnings(registry)?;
+    warnings.faults.retain(|w| w.code != "no_garment" && (is_whole || w.code != "unused"));
+    Some(warnings)
 }
 
 fn unreadable(file: &str, why: &str) -> Box<Faults> {

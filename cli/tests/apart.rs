@@ -113,7 +113,7 @@ fn shell(counter: &Path, number: usize, instead: &str) -> Option<Apart> {
         "n=$(($(cat {counter} 2>/dev/null || echo 0)+1)); echo $n > {counter}; [ $n -eq {number} ] && {instead}; exec {} run-apart",
         env!("CARGO_BIN_EXE_toile")
     );
-    Some(Apart { program: "/bin/sh".into(), arguments: vec!["-c".into(), script.into()] })
+    Some(Apart { program: "/bin/sh".into(), launch: Vec::new(), arguments: vec!["-c".into(), script.into()] })
 }
 
 fn counted(counter: &Path) -> usize {

@@ -152,7 +152,11 @@ pub(crate) fn check_id(id: &str) -> Result<(), String> {
     }
 }
 
-fn setting(path: &str, value: &Value) -> Result<Override, String> {
+/// A value as `--set` takes it, from one that a manifest or a program gives: a text that is no value
+/// of RON gets its quotes.
+///
+/// Errors: a sentence.
+pub(crate) fn setting(path: &str, value: &Value) -> Result<Override, String> {
     let path = path.trim();
     if path.is_empty() || path.contains('=') {
         return Err(format!("\"{path}\" is no path of a value, like \"body.height\""));

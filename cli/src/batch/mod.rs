@@ -21,7 +21,7 @@ mod csv;
 mod folder;
 mod keep;
 pub(crate) mod make;
-mod manifest;
+pub(crate) mod manifest;
 mod memory;
 mod names;
 mod page;

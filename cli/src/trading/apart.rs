@@ -17,6 +17,7 @@ pub(crate) fn with_plugins(program: Apart, plugins: &[PathBuf]) -> Apart {
 /// The program to be started once more, for another of its commands, with the same plugins.
 pub(crate) fn again(program: Option<&Apart>) -> Command {
     let mut command = Command::new(program.map_or_else(PathBuf::new, |p| p.program.clone()));
+    command.args(program.map_or(&[][..], |p| &p.launch));
     command.args(program.map_or(&[][..], plugins));
     command
 }
@@ -24,7 +25,7 @@ pub(crate) fn again(program: Option<&Apart>) -> Command {
 /// The program as it runs another command with the same plugins.
 pub(crate) fn for_command(program: &Apart, command: &str) -> Apart {
     let arguments = plugins(program).iter().cloned().chain([command.into()]).collect();
-    Apart { arguments, program: program.program.clone() }
+    Apart { arguments, ..program.clone() }
 }
 
 /// The arguments that name plugins.

@@ -7,7 +7,8 @@
 //!   `inside` (which plugin the program is in), `loaded` (what a plugin brings).
 //! - The program's side, which loads libraries, is `toile_pipeline::plugin`.
 //!
-//! Architecture invariant: this folder and that one hold all the `unsafe` code of the project.
+//! Architecture invariant: this folder and that one hold all the `unsafe` code of the project, but
+//! for that of `python/src/view.rs`, which shows artifacts as arrays of numpy.
 //! Nothing but `repr(C)` types crosses, no memory is freed by the side that did not make it, no
 //! panic passes.
 

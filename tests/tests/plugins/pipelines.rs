@@ -126,12 +126,12 @@ fn a_file_that_a_plugin_reads_is_part_of_what_its_result_depends_on() {
     assert!(picture().0 != first, "a changed file gives another result");
 }
 
-/// Rust code that can end the program lies in one folder.
+/// Rust code that can end the program lies in one folder; but for the views of numpy.
 #[test]
 fn unsafe_code_lies_in_the_plugin_boundary_alone() {
     let root = toile_tests::root();
     let mut found = Vec::new();
-    for folder in ["core", "stages", "cli", "plugins", "tests", "pipelines"] {
+    for folder in ["core", "stages", "cli", "plugins", "tests", "pipelines", "python"] {
         look(&root.join(folder), &mut found);
     }
     let outside: Vec<_> = found
@@ -140,6 +140,7 @@ fn unsafe_code_lies_in_the_plugin_boundary_alone() {
             !p.contains("core/src/plugin/")
                 && !p.contains("core/pipeline/src/plugin/")
                 && !p.contains("core/derive/")
+                && !p.ends_with("python/src/view.rs")
         })
         .collect();
     assert!(outside.is_empty(), "{outside:?}");

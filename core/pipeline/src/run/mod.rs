@@ -31,7 +31,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use steps::{PipelineRun, StageOutcome};
 use toile_core::RunLog;
-use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles};
+use toile_core::artifact::{Artifact, Digest, Figures, Kind, OutputFile, OutputFiles};
 use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, Remarks, StageError, panics};
 
 /// Options of a run.
@@ -43,6 +43,9 @@ pub struct RunOptions {
     pub also: Vec<String>,
     /// Give every stage's artifacts as files as well.
     pub keep: bool,
+    /// Kinds of which the last that the run made is in the record, though nothing else had to read
+    /// it from the cache.
+    pub load: Vec<Kind>,
     /// Where results of stages are kept and found; none runs everything.
     pub cache: Option<Arc<Cache>>,
     /// Takes all files that stages read, or tried to, whether the run comes to its end or not.
@@ -131,6 +134,7 @@ pub fn run(
     };
     let judged = unharmed(&mut run, &plan).inspect_err(|error| so_far::leave(&mut run, options, error))?;
     let files = files(&mut run, options)?;
+    load(&mut run, &options.load)?;
     if let Some(cache) = cache {
         cache.tidy();
     }
@@ -196,6 +200,19 @@ fn unbroken<T>(node: &Node, work: impl FnOnce() -> Result<T, RunError>) -> Resul
         let error = StageError::internal(format!("the runner panicked: {words}")).hint(panics::REPORT);
         Err(RunError { stage: node.id.clone(), entry: String::new(), span: node.span.clone(), error })
     })
+}
+
+/// Brings the last artifact of each of these kinds into memory.
+fn load(run: &mut PipelineRun<'_>, kinds: &[Kind]) -> Result<(), RunError> {
+    for kind in kinds {
+        let nodes = run.pipeline.nodes.iter().zip(&run.steps).enumerate().rev();
+        let mut ran = nodes.filter(|(_, (_, step))| step.ran().is_some());
+        let last = ran.find(|(_, (node, _))| node.card.outputs.iter().any(|o| o.kind == *kind));
+        if let Some(index) = last.map(|(index, _)| index) {
+            run.ensure_all(index)?;
+        }
+    }
+    Ok(())
 }
 
 /// The writers' files and those of stages whose artifacts were requested.

@@ -159,15 +159,15 @@ fn named(name: &str) -> Result<(), StageError> {
 }
 
 /// Decoded pixels that several photos may share.
-struct DecodedPicture {
-    pixels: Shared<image::RgbImage>,
-    alpha: Option<Shared<image::GrayImage>>,
+pub(super) struct DecodedPicture {
+    pub(super) pixels: Shared<image::RgbImage>,
+    pub(super) alpha: Option<Shared<image::GrayImage>>,
     /// Where an object in it tells.
-    px_per_metre: Option<f64>,
+    pub(super) px_per_metre: Option<f64>,
 }
 
 impl DecodedPicture {
-    fn photo(&self, file: &PhotoFile, mirrored: bool) -> Photo {
+    pub(super) fn photo(&self, file: &PhotoFile, mirrored: bool) -> Photo {
         Photo {
             pixels: self.pixels.clone(),
             alpha: self.alpha.clone(),
@@ -181,7 +181,7 @@ impl DecodedPicture {
 }
 
 /// Reads a file for the side `name`, and looks for an object in it.
-fn read_file(
+pub(super) fn read_file(
     file: &str,
     object: Option<ScaleObject>,
     name: &str,

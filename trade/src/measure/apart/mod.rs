@@ -30,6 +30,8 @@ use std::path::PathBuf;
 pub struct Apart {
     /// The program.
     pub program: PathBuf,
+    /// What stands before its arguments where another program runs it, like `-m toile`.
+    pub launch: Vec<OsString>,
     /// Its arguments.
     pub arguments: Vec<OsString>,
 }
@@ -41,6 +43,6 @@ impl Apart {
     pub fn this_program(arguments: Vec<OsString>) -> Option<Self> {
         let own = PathBuf::from("/proc/self/exe");
         let program = if own.exists() { Some(own) } else { std::env::current_exe().ok() };
-        program.map(|program| Apart { program, arguments })
+        program.map(|program| Apart { program, launch: Vec::new(), arguments })
     }
 }

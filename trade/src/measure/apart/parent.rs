@@ -86,7 +86,7 @@ impl Apart {
 
     fn start(&self) -> std::io::Result<Child> {
         Command::new(&self.program)
-            .args(&self.arguments)
+            .args(self.launch.iter().chain(&self.arguments))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

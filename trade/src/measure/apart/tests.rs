@@ -84,7 +84,7 @@ fn a_pipeline_that_does_not_load_is_the_runs_own_failure() {
 /// A program of the system in the place of this one.
 #[cfg(unix)]
 fn shell(script: &str) -> Apart {
-    Apart { program: "/bin/sh".into(), arguments: vec!["-c".into(), script.into()] }
+    Apart { program: "/bin/sh".into(), launch: Vec::new(), arguments: vec!["-c".into(), script.into()] }
 }
 
 #[cfg(unix)]
@@ -106,7 +106,7 @@ fn a_process_that_breaks_off_is_a_failed_run() {
     assert_eq!(aborted.hint, None);
     assert_eq!(failure("exit 70").message, "the run's own process ended with code 70");
     assert_eq!(failure("true").message, "a run's own process answers with no whole line");
-    let gone = Apart { program: "no/such/program".into(), arguments: Vec::new() };
+    let gone = Apart { program: "no/such/program".into(), launch: Vec::new(), arguments: Vec::new() };
     let Err(Missed::Failed(e)) = gone.run(&Task::default(), &Cancel::new()) else {
         unreachable!("it is not there")
     };
