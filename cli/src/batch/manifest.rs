@@ -152,8 +152,8 @@ pub(crate) fn check_id(id: &str) -> Result<(), String> {
     }
 }
 
-/// A value as `--set` takes it, from one that a manifest or a program gives: a text that is no value
-/// of RON gets its quotes.
+/// A value as `--set` takes it, from one that a manifest or a program gives: a text that is no
+/// value of RON gets its quotes.
 ///
 /// Errors: a sentence.
 pub(crate) fn setting(path: &str, value: &Value) -> Result<Override, String> {

@@ -96,7 +96,8 @@ fn card(py: Python<'_>, spec: &FunctionSpec) -> PyResult<Card> {
     })
 }
 
-/// A default as RON, from JSON. A text keeps its letters, though they are a name or a number in RON.
+/// A default as RON, from JSON. A text keeps its letters, though they are a name or a number in
+/// RON.
 fn ron_default(py: Python<'_>, kind: ParameterKind, param: &str, json: &str) -> PyResult<String> {
     if kind == ParameterKind::Text {
         let text: Option<String> = serde_json::from_str(json).ok();

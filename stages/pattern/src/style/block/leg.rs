@@ -5,7 +5,6 @@
 //! (Aldrich 2008); what the fork shows beyond the seat's width is part of it. Short legs that touch
 //! hide the fork itself, and what is seen below it is the hem: it is cut as high as the wearer's.
 
-use super::pieces::Making;
 use crate::mesh::crossing::first_crossing;
 use crate::style::block::template::curve::Curve;
 use crate::style::block::template::fit::{SEAT, SHORT};
@@ -44,7 +43,7 @@ struct LyingLeg {
 }
 
 impl LyingLeg {
-    fn of(side: &Side, making: Making) -> Option<Self> {
+    fn of(side: &Side, rise: f64) -> Option<Self> {
         let (inseam, hem) = (side.edge(EdgeRole::Inseam)?, side.edge(EdgeRole::Hem)?);
         let [fork, .., foot] = inseam.0;
         let waist = side.edges.last()?.1.0[3];
@@ -52,7 +51,7 @@ impl LyingLeg {
         let are_short = inseam.length() < SHORT * (outer(EdgeRole::Outseam) + outer(EdgeRole::Hip));
         let lying = LyingLeg { fork, foot, waist, inseam, hem: vec![hem], are_short };
         let high = HIDDEN * (waist.y - foot.y).max(0.0);
-        let wearers = waist.y - making.rise;
+        let wearers = waist.y - rise;
         if fork.y - foot.y < high {
             let own = Point2::new(fork.x, wearers.clamp(fork.y + LEAST_INSEAM * high, fork.y + high));
             let (inseam, hem) = (straight(own, fork), vec![inseam, hem]);
@@ -62,9 +61,10 @@ impl LyingLeg {
     }
 }
 
-/// One layer of a leg.
-pub(super) fn leg(side: &Side, layer: Layer, making: Making) -> Option<Flat> {
-    let lying = LyingLeg::of(side, making)?;
+/// One layer of a leg, for a wearer whose waist lies so high above the fork, metres. None of a form
+/// without inseam and hem.
+pub(super) fn leg(side: &Side, layer: Layer, rise: f64) -> Option<Flat> {
+    let lying = LyingLeg::of(side, rise)?;
     let (low, high) = (lying.fork, lying.waist);
     let width = |share: f64| {
         let y = low.y + share * (high.y - low.y);
@@ -103,7 +103,7 @@ pub(super) fn leg(side: &Side, layer: Layer, making: Making) -> Option<Flat> {
         straight + (c.0[1] + out(INNER) - straight) * share
     };
     // Straight down, then out to the point.
-    let rise = Curve([high, high + (low - high) * STRAIGHT, low + out(HOLLOW), tip]);
+    let middle = Curve([high, high + (low - high) * STRAIGHT, low + out(HOLLOW), tip]);
     let mut hem = lying.hem.clone();
     if let Some(Curve([a, b, c, _])) = hem.first_mut() {
         (*a, *b, *c) = (foot, *b + moved * (2.0 / 3.0), *c + moved / 3.0);
@@ -118,7 +118,7 @@ pub(super) fn leg(side: &Side, layer: Layer, making: Making) -> Option<Flat> {
             EdgeRole::Hem => (role, hem.clone()),
             _ => (role, vec![c]),
         };
-        side.edges.iter().map(changed).chain([(EdgeRole::Rise, vec![rise])]).collect()
+        side.edges.iter().map(changed).chain([(EdgeRole::Rise, vec![middle])]).collect()
     };
     // The inseam of a leg that lies bent is straightened until it meets no other edge. It leaves
     // the point downwards: the rise comes in level.

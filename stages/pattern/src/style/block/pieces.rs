@@ -52,7 +52,7 @@ pub(super) fn layer(fit: &Fit, form: &Form, making: Making, layer: Layer, is_cut
         return waist::gathered(&sides, layer, fullness, band.metres(), is_cut);
     }
     if form.has_legs() {
-        return sides.iter().filter_map(|s| leg::leg(s, layer, making)).collect();
+        return sides.iter().filter_map(|s| leg::leg(s, layer, making.rise)).collect();
     }
     let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form, layer, is_cut)).collect();
     let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
