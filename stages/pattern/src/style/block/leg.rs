@@ -155,3 +155,53 @@ fn at_height(c: &Curve, y: f64) -> f64 {
         || points.iter().min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs())).map_or(0.0, |p| p.x);
     passes.map_or_else(nearer, |w| w[0].x + (w[1].x - w[0].x) * (y - w[0].y) / (w[1].y - w[0].y))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// Shorts 35 cm high, whose fork and inseam are seen so high, metres.
+    fn shorts(fork: f64) -> Side {
+        let places = [[0.0, fork], [0.04, 0.0], [0.33, 0.06], [0.3, 0.2], [0.22, 0.35], [0.0, 0.35]];
+        let roles = [EdgeRole::Inseam, EdgeRole::Hem, EdgeRole::Outseam, EdgeRole::Hip, EdgeRole::Waist];
+        let place = |k: usize| Point2::new(places[k][0], places[k][1]);
+        let edges = roles.iter().enumerate().map(|(k, role)| (*role, straight(place(k), place(k + 1))));
+        Side { edges: edges.collect(), mirrored: false, hand: Hand::Right }
+    }
+
+    fn lengths(side: &Side, rise: f64) -> [[f64; 2]; 2] {
+        Layer::BOTH.map(|layer| {
+            let flat = leg(side, layer, rise).unwrap();
+            let length = |role| flat.edges.iter().find(|e| e.role == role).unwrap().run.length();
+            [EdgeRole::Inseam, EdgeRole::Hem].map(length)
+        })
+    }
+
+    #[test]
+    fn a_fork_that_touching_legs_hide_is_cut_as_high_as_the_wearers() {
+        let inseam = |rise| lengths(&shorts(0.02), rise)[0][0];
+        // The seen fork lies 33 cm below the waist: the wearer's 31 or 29 cm.
+        assert!(inseam(0.29) > inseam(0.31) + 0.004);
+        // No lower than 2 cm above what is seen, and no higher than 5.
+        assert_eq!(inseam(0.4).to_bits(), inseam(0.5).to_bits());
+        assert_eq!(inseam(0.1).to_bits(), inseam(0.2).to_bits());
+    }
+
+    #[test]
+    fn what_is_seen_below_a_hidden_fork_is_hem() {
+        let side = shorts(0.02);
+        let [front, back] = lengths(&side, 0.3).map(|[_, hem]| hem);
+        let seen: f64 = side.edges[..2].iter().map(|(_, c)| c.length()).sum();
+        assert!((front + back - 2.0 * seen).abs() < 0.02, "{front} {back} {seen}");
+    }
+
+    #[test]
+    fn both_inseams_are_of_one_length_however_high_the_fork_is() {
+        for fork in [0.0, 0.03, 0.06, 0.1, 0.15] {
+            let [front, back] = lengths(&shorts(fork), 0.28).map(|[inseam, _]| inseam);
+            assert!((front / back - 1.0).abs() < 0.04, "{fork}: {front} {back}");
+        }
+    }
+}

@@ -64,16 +64,3 @@ fn both_inseams_of_short_shorts_are_of_one_length() {
     assert!(back[1] > front[1] + 20.0, "{} and {}", front[1], back[1]);
     assert!((front[1] + back[1] - 2.0 * between(shorts, 1)).abs() < 12.0, "{} and {}", front[1], back[1]);
 }
-
-#[test]
-fn a_fork_that_touching_legs_hide_is_cut_as_high_as_the_wearers() {
-    let shorts: &[[f64; 2]] = &[[0.0, 35.0], [40.0, 0.0], [330.0, 60.0], [220.0, 350.0], [0.0, 350.0]];
-    let (pattern, body, _) = worn(BlockStyle::Trousers, shorts, 0.27);
-    let rise = 1e3 * crate::style::block::wearable::rise(&body);
-    let inseam = length(&pattern, "left_leg_front", "inseam");
-    // Of 315 mm from the fork that is seen up to the waist.
-    assert!(inseam > 0.4 * 0.15 * 350.0 && rise > 200.0, "{inseam:.1}, {rise:.1}");
-    let hem = length(&pattern, "left_leg_front", "hem") + length(&pattern, "left_leg_back", "hem");
-    let seen = between(shorts, 0) + between(shorts, 1);
-    assert!((hem - 2.0 * seen).abs() < 25.0, "{hem:.1} for {:.1}", 2.0 * seen);
-}
