@@ -56,7 +56,7 @@ use methods::methods;
 use std::collections::BTreeMap;
 use things::things;
 use toile_core::prelude::*;
-use wedge::{follow, with_gaps, with_inlets, with_wedges};
+use wedge::{follow, with_inlets, with_wedges};
 
 /// The binariser that takes what a user marks.
 const NEXT: &str = "`GraphCut()`";
@@ -69,7 +69,7 @@ const NEXT: &str = "`GraphCut()`";
 /// lie apart from each other, the largest is taken, or the one that is marked.
 #[stage(
     role = Binariser,
-    version = 5,
+    version = 4,
     source = "Boykov and Jolly, 2001; Grady, 2006; Otsu, 1979",
     example = "Auto(confidence: 0.3)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -205,19 +205,15 @@ impl Auto {
         cx.figure("edges", 100.0 * evidence.support, "% of the outline");
         cx.figure("symmetry", evidence.symmetry, "");
         cx.figure("seen", evidence.seen, "");
-        let large = match seen.as_ref().zip(garment) {
+        let large = match seen.zip(garment) {
             Some((seen, garment)) if network::agrees(&coarse.mask, &garment) => {
-                network::with_odds(large, seen)
+                network::with_odds(large, &seen)
             }
             _ => large,
         };
         let cut = GraphCut::default();
-        let raw = cut.raw_at(&large, coarse, cx)?;
-        let (fine, inlets) = with_inlets(&cut.fine(&large, coarse, cx)?, &raw, large.w);
-        let fine = match &seen {
-            Some(seen) => with_gaps(fine, &raw, large.w, &network::ground(&large, seen)),
-            None => fine,
-        };
+        let (fine, inlets) =
+            with_inlets(&cut.fine(&large, coarse, cx)?, &cut.raw_at(&large, coarse, cx)?, large.w);
         let mut mask = refine(photo, &large, &fine, cx)?;
         let (w, h) = mask.dimensions();
         let in_photo =

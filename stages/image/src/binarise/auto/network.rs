@@ -43,11 +43,6 @@ pub(super) fn garment(small: &SmallPhoto, seen: &SeenGarment) -> Vec<bool> {
     seen.mask(small.w, small.h).iter().map(|p| *p > 0.5).collect()
 }
 
-/// The probability of each pixel to be ground, as the network sees it.
-pub(super) fn ground(small: &SmallPhoto, seen: &SeenGarment) -> Vec<f64> {
-    seen.mask(small.w, small.h).iter().map(|p| 1.0 - f64::from(*p)).collect()
-}
-
 /// Whether a mask is what the network sees but for its border, so that the network may have a say
 /// in where that runs.
 pub(super) fn agrees(mask: &[bool], garment: &[bool]) -> bool {

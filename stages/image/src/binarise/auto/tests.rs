@@ -208,22 +208,6 @@ fn a_print_of_the_grounds_colour_is_no_wedge() {
     assert!(score(&run(&photo).unwrap(), tee) > 0.98);
 }
 
-/// Ground within a loop of a sleeve that touches the side above and below it, and a print of the
-/// ground's colour: both are holes of what is found by colour.
-#[test]
-fn a_gap_is_opened_where_the_network_sees_ground() {
-    let w = 60;
-    let within = |k: usize, x: [usize; 2], y: [usize; 2]| {
-        (x[0]..x[1]).contains(&(k % w)) && (y[0]..y[1]).contains(&(k / w))
-    };
-    let (gap, print) = (|k| within(k, [10, 16], [30, 50]), |k| within(k, [30, 40], [20, 30]));
-    let all = || 0..w * 80;
-    let raw: Vec<bool> = all().map(|k| !gap(k) && !print(k)).collect();
-    let ground: Vec<f64> = all().map(|k| if gap(k) { 0.8 } else { 0.1 }).collect();
-    let open = super::wedge::with_gaps(vec![true; w * 80], &raw, w, &ground);
-    assert!(all().all(|k| open[k] != gap(k)));
-}
-
 #[test]
 fn a_mask_of_another_size_is_refused() {
     let photo = photo(|x, y| if tee(x, y) { [160, 40, 60] } else { [225; 3] });

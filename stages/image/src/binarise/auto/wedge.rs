@@ -11,9 +11,6 @@
 //! clean-up closes ([`with_inlets`]), and in the photo itself up to its tip ([`follow`]). What
 //! tapers away from the outside is such a wedge; a stripe that ends at the hem does not taper.
 //!
-//! A gap that garment surrounds and that is no wedge is opened where the network sees ground there,
-//! too ([`with_gaps`]).
-//!
 //! Cost: one labelling of the mask and a symmetry axis; an inlet one labelling. Limits: a wedge on
 //! the axis, between two legs that touch at their feet, stays filled.
 
@@ -35,9 +32,6 @@ const ONE_SIDE: f64 = 0.95;
 const LONG: f64 = 4.0;
 /// Where it comes near the outside, it does so over at most this share of its length.
 const ONE_PLACE: f64 = 0.5;
-
-/// A gap that garment surrounds is ground from this mean probability on.
-const SURELY: f64 = 0.6;
 
 /// An inlet holds at least this share of the garment.
 const LEAST_INLET: f64 = 0.0005;
@@ -73,24 +67,6 @@ pub(super) fn with_inlets(mask: &[bool], raw: &[bool], w: usize) -> (Vec<bool>, 
         }
     }
     (open, ends)
-}
-
-/// The mask with the gaps opened that a clean-up has filled: ground that garment surrounds, by the
-/// colours in `raw` and by `ground`, the probability of each pixel that the network gives.
-pub(super) fn with_gaps(mask: Vec<bool>, raw: &[bool], w: usize, ground: &[f64]) -> Vec<bool> {
-    let h = mask.len() / w.max(1);
-    let filled: Vec<bool> = mask.iter().zip(raw).map(|(on, raw)| *on && !raw).collect();
-    let filled = Regions::of(&picture(&filled, w, h));
-    let least = LEAST * mask.iter().filter(|on| **on).count() as f64;
-    let mut open = mask;
-    for (i, _) in filled.pieces.iter().enumerate().filter(|(_, p)| p.on && p.area as f64 >= least) {
-        let pixels = places(&bits(&filled.paint(|k, _| k == i)));
-        let mean = pixels.iter().map(|&k| ground[k]).sum::<f64>() / pixels.len().max(1) as f64;
-        if mean >= SURELY {
-            pixels.into_iter().for_each(|k| open[k] = false);
-        }
-    }
-    open
 }
 
 /// Follows an inlet from where it ends, at `end`, to its tip in the photo: what is connected with
