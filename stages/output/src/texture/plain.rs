@@ -418,7 +418,8 @@ mod tests {
     #[test]
     fn a_print_on_creased_cloth_is_no_pattern() {
         let crease = |x: u32, y: u32| cloth(x, y).map(|v| v - 14 * u8::from((x + 2 * y) % 24 < 8));
-        let letters = |x: u32, y: u32| (50..150).contains(&x) && (60..180).contains(&y) && x / 9 % 2 == 0;
+        let letters =
+            |x: u32, y: u32| (50..150).contains(&x) && (60..180).contains(&y) && (x / 9).is_multiple_of(2);
         let (mut pixels, sure) = picture(|x, y| if letters(x, y) { [250; 3] } else { crease(x, y) });
         assert!(plain(&mut pixels, &sure));
         assert!(pixels.pixels().all(|p| p.0[0] < 120));
