@@ -3,7 +3,8 @@
 //! Trousers that lie flat hide what goes between the legs: the points of the fork lie folded under
 //! the other leg. A block gives them 15 % of the seat's girth, a third of it before and two behind
 //! (Aldrich 2008); what the fork shows beyond the seat's width is part of it. Short legs that touch
-//! hide the fork itself, and what is seen below it is the hem: it is cut as high as the wearer's.
+//! hide the fork itself, and all that is seen below is hem: the fork is cut as high as the
+//! wearer's.
 
 use crate::mesh::crossing::first_crossing;
 use crate::style::block::template::curve::Curve;
@@ -16,7 +17,8 @@ use toile_core::prelude::*;
 const FORK: f64 = 0.15;
 /// A fork that lies lower than this share of the way from hem to waist is hidden.
 const HIDDEN: f64 = 0.15;
-/// It is cut at least this share of that higher than what is seen of it.
+/// A hidden fork is cut higher than it is seen by at least this share of `HIDDEN`: legs of shorts
+/// have some length.
 const LEAST_INSEAM: f64 = 0.4;
 /// Legs are long from so many times the length of the point on.
 const LONG: f64 = 6.0;
