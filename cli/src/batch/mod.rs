@@ -46,7 +46,7 @@ use plan::BatchPlan;
 use pool::PoolLimits;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use tally::BatchTally;
+use tally::{BatchTally, Tallies};
 use toile_core::{Registry, StageError};
 use toile_pipeline::Faults;
 
@@ -176,14 +176,15 @@ fn planned(
     let mut keeper = GarmentKeeper::new(args, &plan, &folder, registry, streams, limits.jobs > 1);
     let ran = pool::run(&program, plan.run.iter().copied(), &limits, &cancel, &mut keeper);
     interrupt::begin_writing();
-    let tally = summary::write(&folder, &plan.garments, &plan.tickets)?;
+    let tallies = summary::write(&folder, &plan.garments, &plan.tickets, args.shard)?;
     if let Err(why) = ran {
         return Err(StageError::invalid(why)
             .hint("what was done before is kept: start the batch again, and it goes on from there"));
     }
     let is_stopped = cancel.is_cancelled();
-    tell_end(args, &folder, &tally, is_stopped, streams);
-    Ok(match (is_stopped, tally.faults.is_empty()) {
+    tell_end(args, &folder, &tallies, is_stopped, streams);
+    // What other shares have come to says nothing of this one.
+    Ok(match (is_stopped, tallies.share.faults.is_empty()) {
         (true, _) => exit::STOPPED,
         (false, false) => exit::QUALITY,
         (false, true) => exit::DONE,
@@ -218,18 +219,25 @@ fn limits(args: &BatchArgs) -> PoolLimits {
 fn tell_end(
     args: &BatchArgs,
     folder: &BatchFolder,
-    tally: &BatchTally,
+    Tallies { all, share }: &Tallies,
     is_stopped: bool,
     streams: &mut Streams<'_>,
 ) {
     let page = folder.root().join("index.html");
+    let counts = |t: &BatchTally| json!({ "garments": t.garments, "good": t.good, "faults": t.faults, "left": t.left() });
     match args.json {
-        true => streams.say(json!({
-            "garments": tally.garments, "good": tally.good, "faults": tally.faults, "left": tally.left(),
-            "stopped": is_stopped, "folder": folder.root().display().to_string(),
-        })),
+        true => {
+            let mut record = counts(all);
+            record["share"] = counts(share);
+            record["stopped"] = is_stopped.into();
+            record["folder"] = folder.root().display().to_string().into();
+            streams.say(record);
+        }
         false => {
-            streams.report(tally.words());
+            if args.shard.count > 1 {
+                streams.report(format!("share {}, {}", args.shard, share.words()));
+            }
+            streams.report(all.words());
             streams.report(page.display());
         }
     }

@@ -3,6 +3,13 @@
 use super::record::ResultLine;
 use std::collections::BTreeMap;
 
+/// How all garments of a manifest stand, and those of a share.
+#[derive(Debug)]
+pub(crate) struct Tallies {
+    pub(crate) all: BatchTally,
+    pub(crate) share: BatchTally,
+}
+
 /// How the garments of a manifest stand.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct BatchTally {
@@ -16,12 +23,15 @@ pub(crate) struct BatchTally {
 
 impl BatchTally {
     /// Of the lines of a manifest of so many garments.
-    pub(crate) fn of(lines: &[ResultLine], garments: usize) -> Self {
-        let mut faults = BTreeMap::new();
-        for kind in lines.iter().filter_map(|l| l.fault.fault.clone()) {
-            *faults.entry(kind).or_insert(0) += 1;
+    pub(crate) fn of<'a>(lines: impl IntoIterator<Item = &'a ResultLine>, garments: usize) -> Self {
+        let mut tally = BatchTally { garments, ..BatchTally::default() };
+        for line in lines {
+            match &line.fault.fault {
+                Some(kind) => *tally.faults.entry(kind.clone()).or_insert(0) += 1,
+                None => tally.good += 1,
+            }
         }
-        BatchTally { garments, good: lines.len() - faults.values().sum::<usize>(), faults }
+        tally
     }
 
     /// Garments that have yet to be run.

@@ -118,10 +118,28 @@ fn the_answer_is_one_object_for_programs() {
     let told: Value = serde_json::from_str(&out).unwrap();
     let folder = dir.path().join("out").display().to_string();
     assert_eq!(code, Some(0));
+    let all = json!({ "garments": 2, "good": 2, "faults": {}, "left": 0 });
+    let mut whole = all.clone();
+    (whole["share"], whole["stopped"], whole["folder"]) = (all, false.into(), folder.into());
+    assert_eq!(told, whole);
+}
+
+#[test]
+fn a_share_answers_for_its_own_garments() {
+    let dir = set(3);
+    fs::write(dir.path().join("in/s1.json"), "{").unwrap();
+    assert_eq!(ran(batch(dir.path(), "out", &["--shard", "2/3"])).0, Some(4));
+    let (code, out, _) = ran(batch(dir.path(), "out", &["--shard", "1/3"]));
+    assert_eq!(code, Some(0), "the fault is of another share");
+    let told: Vec<&str> = out.lines().take(2).collect();
     assert_eq!(
         told,
-        json!({ "garments": 2, "good": 2, "faults": {}, "left": 0, "stopped": false, "folder": folder })
+        ["share 1/3, 1 garment: 1 good", "3 garments: 1 good, 1 pattern_loading, 1 not run yet"]
     );
+    let (_, out, _) = ran(batch(dir.path(), "out", &["--shard", "1/3", "--json"]));
+    let told: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(told["share"], json!({ "garments": 1, "good": 1, "faults": {}, "left": 0 }));
+    assert_eq!(told["faults"], json!({ "pattern_loading": 1 }));
 }
 
 #[test]

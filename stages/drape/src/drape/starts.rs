@@ -72,8 +72,9 @@ fn told(all: &[(&str, Option<StartTrial>)], best: usize) -> String {
             }
             Some(_) => "all seams close and nothing crosses".to_owned(),
         };
+        let sunk = trial.filter(|t| t.has_sunk()).map(|t| format!(", it sinks by {:.0} mm", t.sunk * 1e3));
         let taken = if k == best { "; taken" } else { "" };
-        format!("{name}: {result}{taken}")
+        format!("{name}: {result}{}{taken}", sunk.unwrap_or_default())
     };
     let lines: Vec<String> = all.iter().enumerate().map(one).collect();
     format!("{} starts were sewn on a coarse mesh. {}", all.len(), lines.join(". "))
@@ -84,7 +85,7 @@ mod tests {
     use super::*;
 
     fn trial(gap: f64, crossings: usize) -> Option<StartTrial> {
-        Some(StartTrial { gap, crossings, pierced: 0 })
+        Some(StartTrial { gap, crossings, pierced: 0, sunk: 0.0 })
     }
 
     #[test]
@@ -96,6 +97,16 @@ mod tests {
         assert_eq!(best_of(&[trial(0.0, 0), trial(0.0, 0)]), 0, "the first of those alike");
         assert_eq!(best_of(&[None, trial(0.4, 0)]), 1);
         assert_eq!(best_of(&[trial(0.075, 0), trial(0.072, 0)]), 0, "3 mm are chance");
+        let sunk = trial(0.0, 0).map(|t| StartTrial { sunk: 0.2, ..t });
+        assert_eq!(
+            best_of(&[sunk, trial(0.0, 4)]),
+            1,
+            "what slides off the shoulders is worse than crossings"
+        );
+        assert_eq!(best_of(&[sunk, trial(0.1, 0)]), 1, "nearer to its place");
+        assert_eq!(best_of(&[sunk, trial(0.3, 0)]), 0);
+        assert_eq!(best_of(&[trial(0.0, 9), trial(0.0, 5)]), 0, "the difference is chance");
+        assert_eq!(best_of(&[trial(0.0, 9), trial(0.0, 4)]), 1);
     }
 
     #[test]
@@ -105,6 +116,12 @@ mod tests {
             told(&all, 1),
             "2 starts were sewn on a coarse mesh. as the pieces are placed: a seam stays 72 mm open. \
              with the legs where the file puts them: all seams close and nothing crosses; taken"
+        );
+        let sunk = trial(0.0, 3).map(|t| StartTrial { sunk: 0.2, ..t });
+        assert_eq!(
+            told(&[(PLACED, sunk), ("closed", trial(0.0, 0))], 1),
+            "2 starts were sewn on a coarse mesh. as the pieces are placed: all seams close, 3 pairs cross, the body comes through 0, \
+             it sinks by 200 mm. closed: all seams close and nothing crosses; taken"
         );
     }
 }

@@ -72,7 +72,7 @@ pub enum ProofSteps {
 /// `non_static` 0 and `proof` `Short`.
 #[stage(
     role = Draper,
-    version = 24,
+    version = 25,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "StaticEquilibrium(speed: 0.001, non_static: 0.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -133,8 +133,9 @@ pub struct StaticEquilibrium {
     /// Where the body keeps seams open, or the cloth does not come out of itself or of the body,
     /// the garment is sewn again around a thin figure of the body's pose, which grows to its full
     /// size in it; a note says so, and the better result is taken. Where the placement left other
-    /// starts and the first does not sew cleanly on the coarsest mesh, each is sewn on it, and the
-    /// best goes on. Left out, it is true behind a placement of a pattern, such as `Arrange`.
+    /// starts and the first does not sew cleanly on the coarsest mesh, or sinks while its seams
+    /// close, each is sewn on it, and the best goes on. Left out, it is true behind a placement of
+    /// a pattern, such as `Arrange`.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well,

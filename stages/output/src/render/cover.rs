@@ -78,11 +78,15 @@ impl CoveredTriangle {
         let sides = [(b, c), (c, a), (a, b)];
         let along = |[x, y]: [i64; 2]| sides.map(|(p, q)| (q[0] - p[0]) * y - (q[1] - p[1]) * x);
         let (step, offsets) = (along([STEPS, 0]), samples.map(along));
+        // No sample of a pixel lies farther inside of a side than its corner does, and by this.
+        let reach = [0, 1, 2].map(|k| offsets.iter().map(|o| o[k]).max().unwrap_or(0));
         let share = self.near.map(|n| n / self.area as f64);
         for y in y0.max(rows.start)..=y1.min(rows.end - 1) {
             let mut corner = sides.map(|(p, q)| edge(p, q, [x0 * STEPS, y * STEPS]));
             for x in x0..=x1 {
-                for (s, o) in offsets.iter().enumerate() {
+                let is_near = (corner[0] + reach[0]) | (corner[1] + reach[1]) | (corner[2] + reach[2]);
+                let tested = if is_near >= 0 { offsets.as_slice() } else { &[] };
+                for (s, o) in tested.iter().enumerate() {
                     let e = [corner[0] + o[0], corner[1] + o[1], corner[2] + o[2]];
                     if (e[0] | e[1] | e[2]) >= 0 {
                         let near = e[0] as f64 * share[0] + e[1] as f64 * share[1] + e[2] as f64 * share[2];

@@ -167,7 +167,7 @@ impl<'a> ModelScene<'a> {
         let lights = self.lights(&camera);
         let (width, height) = (view.width as usize, view.height);
         let (key, faces) = (&self.soft_box(lights.key), faces(self.model, &camera));
-        let shot = Shot { scene: self, key, faces, lights, width, height };
+        let shot = Shot::new(self, key, faces, lights, [width, height as usize]);
         let mut picture = RgbImage::new(view.width, view.height);
         let band_bytes = (view.width as usize * 3 * BAND_ROWS).max(1);
         picture
@@ -185,10 +185,10 @@ impl<'a> ModelScene<'a> {
     /// meanwhile.
     pub fn cut_outs(&self, orbit: &Orbit, azimuth: f64, elevations: &[f64]) -> Vec<RgbaImage> {
         let lights = self.lights(&orbit.camera(azimuth, super::camera::EYE_ELEVATION));
-        let (key, width, height) = (&self.soft_box(lights.key), orbit.width as usize, orbit.height);
+        let (key, width, height) = (&self.soft_box(lights.key), orbit.width as usize, orbit.height as usize);
         let view = |elevation: &f64| {
             let faces = faces(self.model, &orbit.camera(azimuth, *elevation));
-            Shot { scene: self, key, faces, lights, width, height }.cut_out()
+            Shot::new(self, key, faces, lights, [width, height]).cut_out()
         };
         elevations.iter().map(view).collect()
     }
@@ -224,14 +224,16 @@ struct DrawnTriangle {
     footprint: Footprint,
 }
 
-/// Every drawable triangle, in the order of the model.
+/// Every drawable triangle, in the order of the model. Of a closed mesh those that face away are
+/// left out: its near side hides them.
 fn faces(model: &Model, camera: &Camera) -> Vec<DrawnTriangle> {
     let mesh_faces = |(index, mesh): (usize, &Mesh)| {
+        let closed = model.materials.get(mesh.material).is_some_and(|m| !m.double_sided);
         let placed: Vec<Projected> = mesh.positions.iter().map(|p| camera.project(p)).collect();
         let texture = model.materials.get(mesh.material).and_then(|m| m.texture.or(m.normal_texture));
         let size = texture.and_then(|t| model.textures.get(t)).map(|t| t.pixels.dimensions());
         let face = |t: &[u32; 3]| face(index, mesh, &placed, size, t.map(|i| i as usize));
-        mesh.triangles.iter().filter_map(face).collect::<Vec<_>>()
+        mesh.triangles.iter().filter_map(face).filter(|f| !(closed && f.reversed)).collect::<Vec<_>>()
     };
     model.meshes.iter().enumerate().flat_map(mesh_faces).collect()
 }
@@ -290,12 +292,32 @@ struct Shot<'a> {
     scene: &'a ModelScene<'a>,
     key: &'a [Vec<f32>],
     faces: Vec<DrawnTriangle>,
+    /// The faces that reach into each band, in their order.
+    by_band: Vec<Vec<u32>>,
     lights: Lights,
     width: usize,
-    height: u32,
+    height: usize,
 }
 
-impl Shot<'_> {
+impl<'a> Shot<'a> {
+    fn new(
+        scene: &'a ModelScene<'a>,
+        key: &'a [Vec<f32>],
+        faces: Vec<DrawnTriangle>,
+        lights: Lights,
+        [width, height]: [usize; 2],
+    ) -> Shot<'a> {
+        let mut by_band = vec![Vec::new(); height.div_ceil(BAND_ROWS)];
+        for (id, face) in (0u32..).zip(&faces) {
+            let (first, last) = face.patch.rows();
+            let bands = first.max(0) / BAND_ROWS as i64..=last.min(height as i64 - 1) / BAND_ROWS as i64;
+            if last >= 0 {
+                bands.for_each(|band| by_band[band as usize].push(id));
+            }
+        }
+        Shot { scene, key, faces, by_band, lights, width, height }
+    }
+
     fn draw_band(&self, top: usize, band: &mut [u8]) {
         let rows = band.len() / (self.width * 3);
         if self.scene.stop.is_cancelled() {
@@ -304,7 +326,7 @@ impl Shot<'_> {
         let seen = self.visible(top, rows);
         let lines = band.chunks_exact_mut(self.width * 3).zip(seen.chunks_exact(self.width * SAMPLES.len()));
         for (y, (line, seen)) in (top..).zip(lines) {
-            let wall = wall(y as u32, self.height);
+            let wall = wall(y as u32, self.height as u32);
             let pixels = line.chunks_exact_mut(3).zip(seen.chunks_exact(SAMPLES.len()));
             for (x, (pixel, samples)) in pixels.enumerate() {
                 pixel.copy_from_slice(&self.pixel([x, y], samples, wall).map(encode));
@@ -313,7 +335,7 @@ impl Shot<'_> {
     }
 
     fn cut_out(&self) -> RgbaImage {
-        let mut picture = RgbaImage::new(self.width as u32, self.height);
+        let mut picture = RgbaImage::new(self.width as u32, self.height as u32);
         let band_bytes = (self.width * 4 * BAND_ROWS).max(1);
         picture.par_chunks_mut(band_bytes).enumerate().for_each(|(i, band)| {
             if self.scene.stop.is_cancelled() {
@@ -342,15 +364,12 @@ impl Shot<'_> {
         let samples = self.width * rows * SAMPLES.len();
         let (mut seen, mut nearest) = (vec![NONE; samples], vec![f32::NEG_INFINITY; samples]);
         let range = top as i64..(top + rows) as i64;
-        for (id, face) in self.faces.iter().enumerate() {
-            let (first, last) = face.patch.rows();
-            if last < range.start || first >= range.end {
-                continue;
-            }
-            face.patch.scan(self.width as i64, range.clone(), &SAMPLES, |s, x, y, near| {
+        for &id in &self.by_band[top / BAND_ROWS] {
+            let patch = &self.faces[id as usize].patch;
+            patch.scan(self.width as i64, range.clone(), &SAMPLES, |s, x, y, near| {
                 let at = ((y - top) * self.width + x) * SAMPLES.len() + s;
                 if near as f32 > nearest[at] {
-                    (nearest[at], seen[at]) = (near as f32, id as u32);
+                    (nearest[at], seen[at]) = (near as f32, id);
                 }
             });
         }

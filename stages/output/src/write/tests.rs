@@ -381,6 +381,25 @@ fn the_reports_views_are_those_of_a_preview_that_has_drawn_the_model() {
 }
 
 #[test]
+fn the_report_of_a_run_that_failed_shows_what_it_left_at_the_head() {
+    let mut run = run_log();
+    run.stages.truncate(3);
+    run.failure = Some(toile_core::Failure {
+        stage: "Drape#2".into(),
+        message: "a seam stays open".into(),
+        hint: None,
+        detail: None,
+    });
+    let html = report(&run, "(pictures: 32)");
+    assert_balanced(&html);
+    let told = ["front", "back"].map(|side| {
+        format!("{side} of what the run left; threads of seams that are not closed are red</figcaption>")
+    });
+    assert!(told.iter().all(|text| html.contains(text)));
+    assert!(!report(&run_log(), "(pictures: 32)").contains("of what the run left"));
+}
+
+#[test]
 fn the_report_escapes_what_others_wrote() {
     let html = report(&run_log(), "(pictures: 32)");
     assert!(!html.contains("<script>") && !html.contains("<inside>"));

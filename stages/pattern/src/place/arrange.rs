@@ -9,13 +9,15 @@
 //! made for a body whose origin is its middle are raised onto the floor. Pieces with pleats are
 //! folded first ([`pleats`]), and pieces that are sewn onto others are laid on them last
 //! ([`patches`]). A pattern in which no piece has a pose is placed by names, seams and sizes
-//! ([`region`], [`stand`]).
+//! ([`region`], [`stand`]). Other starts are left for the solver: pieces without the gaps between
+//! those above each other ([`tiers`]), and skirts on cones ([`cones`]).
 //!
 //! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
 //! sews them.
 
 mod boards;
+mod cones;
 mod layers;
 mod legs;
 mod limb;
@@ -26,6 +28,7 @@ mod patches;
 mod pleats;
 mod region;
 mod stand;
+mod tiers;
 mod tubes;
 
 use super::sew::{Offsets, seams};
@@ -66,12 +69,13 @@ const MIDDLE: f64 = 0.65;
 /// pattern says nothing, fronts, backs, sleeves, legs in one piece and waistbands are placed by
 /// their names, seams and sizes. A sleeve or cuff that is cut narrower than the arm by more than
 /// cloth stretches is refused before anything is sewn. What was decided and moved is in the log.
-/// Where legs are swung, or the garment is raised until its shoulder seams clear the shoulders, the
-/// places without that are left as another start, which `StaticEquilibrium` tries where the garment
-/// does not sew.
+/// Other starts are left for `StaticEquilibrium`, which tries them where the garment does not sew:
+/// where legs are swung, or the garment is raised until its shoulder seams clear the shoulders, the
+/// places without that; the pieces without the gaps that the pattern leaves between those above
+/// each other; and skirts on cones around the legs.
 #[stage(
     role = Placement,
-    version = 9,
+    version = 10,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
@@ -147,7 +151,7 @@ impl Arrange {
         };
         let named = sleeves.iter().flatten().map(|s| s.0.clone()).collect::<Vec<_>>();
         let mut others = Vec::new();
-        let raised = raised(&worn, &named, &places, &flat, &seams, body);
+        let raised = raised(&worn, &named, &places, &flat, &seams, (body, false));
         if raised.by > 0.0 {
             others.push(("as high as the pattern puts it", moved(&places).0.places));
             places = raised.places;
@@ -156,11 +160,21 @@ impl Arrange {
                 raised.by * 1e3
             ));
         }
-        let (Moved { places, told, narrowest }, unmoved) = moved(&places);
+        let kept = places;
+        let (Moved { places, told, narrowest }, unmoved) = moved(&kept);
         if let Some((names, narrow)) = narrowest {
             narrow::refuse(&names, &narrow, self.max_tight, cx.stage())?;
         }
         others.extend(unmoved);
+        if self.bend && !unplaced {
+            // Where not all pieces are flat, the trunk may be.
+            let higher = self::raised(&worn, &named, &kept, &flat, &seams, (body, true)).places;
+            let closed = tiers::closed(&moving, &higher);
+            let from = closed.as_ref().unwrap_or(&higher);
+            others.extend((*from != kept).then(|| (tiers::TOLD, moved(from).0.places)));
+            let coned = cones::laid(&moving, from);
+            others.extend(coned.map(|places| (cones::TOLD, moving.bent(places, Vec::new()).places)));
+        }
         let start = |(told, places): (&str, PiecePlaces)| -> Result<GarmentStart, StageError> {
             Ok(GarmentStart { told: told.into(), positions: finished(places)?.0 })
         };
@@ -221,21 +235,22 @@ struct Raised {
     by: f64,
 }
 
-/// Raises each garment of flat pieces until its shoulder seams clear the shoulders.
+/// Raises each garment of flat pieces until its shoulder seams clear the shoulders of the body;
+/// with true, also where only some of its pieces are flat.
 fn raised(
     pattern: &Pattern,
     sleeves: &[String],
     places: &PiecePlaces,
     flat: &Offsets,
     seams: &[GarmentSeam],
-    body: &Body,
+    (body, some): (&Body, bool),
 ) -> Raised {
     let mut out = Raised { places: places.clone(), by: 0.0 };
     for layer in layers::layers(pattern) {
         let is_of = |name: &str| layers::layer(pattern, name) == layer;
         let own: PiecePlaces =
             places.iter().filter(|(name, _)| is_of(name)).map(|(n, p)| (n.clone(), p.clone())).collect();
-        let by = boards::raise(&boards::boards(pattern, sleeves, &own, flat), seams, body);
+        let by = boards::raise(&boards::boards(pattern, sleeves, &own, flat, some), seams, body);
         let mine = out.places.iter_mut().filter(|(name, _)| is_of(name));
         mine.flat_map(|(_, points)| points).for_each(|p| p.y += by);
         out.by = out.by.max(by);

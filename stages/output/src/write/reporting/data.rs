@@ -117,8 +117,12 @@ pub(crate) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
     let model = last::<Model>(run, run.stages.len());
     let heads = model.map_or(Ok(Vec::new()), |model| heads(run, model, views, cx))?;
     let draw = Draw { run, height, model, heads, cx };
-    let views = within(shown(draw.heads_at(VIEW_HEIGHT)), &mut budget).0;
     let garment = last::<Garment>(run, run.stages.len());
+    let views = match (&run.failure, garment) {
+        (Some(_), Some(garment)) if model.is_none() => unfinished(garment, last(run, run.stages.len())),
+        _ => draw.heads_at(VIEW_HEIGHT),
+    };
+    let views = within(shown(views), &mut budget).0;
     let missed = shortfalls(run);
     let outlines = within(shown(outlines(run, height)), &mut budget).0;
     let maps =
@@ -158,6 +162,15 @@ pub(crate) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
         stages,
         skipped: skipped.collect(),
     })
+}
+
+/// A garment that a run left unfinished, with its open seams.
+fn unfinished(garment: &Garment, body: Option<&Body>) -> Vec<ArtifactPicture> {
+    let told = |p: ArtifactPicture| ArtifactPicture {
+        caption: format!("{} of what the run left; threads of seams that are not closed are red", p.caption),
+        ..p
+    };
+    pictures_of(garment, body, VIEW_HEIGHT).into_iter().map(told).collect()
 }
 
 fn section(record: &StageRecord, shown: Vec<Shown>, longest: f64, budget: &mut usize) -> StageSection {

@@ -66,7 +66,7 @@ pub enum Interpolation {
 /// event `toile:pick` with part, triangle and barycentric coordinates.
 #[stage(
     role = Writer,
-    version = 3,
+    version = 4,
     source = "Chen and Williams 1993; Buehler and others 2001; flow: Jain and Jain 1981, Bierling 1988; light of a panorama: Debevec 1998",
     example = "Turntable(views: 24, tiers: 3)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -75,8 +75,8 @@ pub struct Turntable {
     /// The file's name without its extension.
     #[param(default = "turntable".to_owned())]
     name: String,
-    /// Views around the model, at each height.
-    #[param(default = 24, min = 4, max = 120, trades)]
+    /// Views around the model, at each height. `Flow` needs 24 or more.
+    #[param(default = 16, min = 4, max = 120, trades)]
     views: usize,
     /// Heights from which it is seen: 1 to 4.
     #[param(default = 3, min = 1, max = 4, trades)]

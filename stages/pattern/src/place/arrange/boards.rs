@@ -33,13 +33,15 @@ impl Board<'_> {
     }
 }
 
-/// The pieces of trunk and legs, where all of them stand flat; none where one of them does not.
-/// `sleeves` are known by other means.
+/// The pieces of trunk and legs, where all of them stand flat; none where one of them does not,
+/// unless `some` are asked for: a collar that lies around the neck and the ring of a skirt's panels
+/// say nothing against a trunk that stands flat. `sleeves` are known by other means.
 pub(super) fn boards<'a>(
     pattern: &Pattern,
     sleeves: &[String],
     places: &'a PiecePlaces,
     offsets: &Offsets,
+    some: bool,
 ) -> Vec<Board<'a>> {
     let part = |name: &str| pattern.piece(name).and_then(|p| p.body_part);
     let is_worn_there = |name: &str| {
@@ -54,9 +56,11 @@ pub(super) fn boards<'a>(
             is_leg: part(name) == Some(BodyPart::Leg),
         })
     };
-    let found: Option<Vec<Board<'a>>> =
-        places.iter().filter(|(name, _)| is_worn_there(name)).map(board).collect();
-    found.unwrap_or_default()
+    let found = places.iter().filter(|(name, _)| is_worn_there(name)).map(board);
+    match some {
+        true => found.flatten().collect(),
+        false => found.collect::<Option<_>>().unwrap_or_default(),
+    }
 }
 
 /// The places of the pairs of seams between pieces on either side of the trunk.

@@ -42,9 +42,7 @@ pub(super) fn swing(
     offsets: &Offsets,
 ) -> Vec<String> {
     let Some(crotch) = body.landmarks.get("crotch").map(|p| p.y) else { return Vec::new() };
-    let lowest = places.values().flatten().map(|p| p.y).fold(crotch, f64::min);
-    let low = lowest + LOWER * (crotch - lowest);
-    let of_one_leg = of_one_leg(places, seams, offsets, [low, crotch]);
+    let of_one_leg = of_one_leg(places, seams, offsets, [low(places, crotch), crotch]);
     let mut told = Vec::new();
     for piece in pattern.pieces.iter().filter(|p| p.body_part == Some(BodyPart::Leg)) {
         if of_one_leg.get(&piece.name) != Some(&true) {
@@ -81,6 +79,22 @@ pub(super) fn swing(
         }
     }
     told
+}
+
+/// Whether some piece is one of a leg.
+pub(super) fn any_of_one_leg(
+    places: &PiecePlaces,
+    seams: &[GarmentSeam],
+    offsets: &Offsets,
+    crotch: f64,
+) -> bool {
+    of_one_leg(places, seams, offsets, [low(places, crotch), crotch]).values().any(|is_one| *is_one)
+}
+
+/// The height below which seams count.
+fn low(places: &PiecePlaces, crotch: f64) -> f64 {
+    let lowest = places.values().flatten().map(|p| p.y).fold(crotch, f64::min);
+    lowest + LOWER * (crotch - lowest)
 }
 
 /// For each piece that reaches below the first height, whether it and all that is sewn to it there

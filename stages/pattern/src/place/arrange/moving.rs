@@ -43,7 +43,7 @@ impl MoveInput<'_> {
     }
 
     /// Sleeves and cuffs, bent around the arms.
-    fn bent(&self, mut places: PiecePlaces, mut told: Vec<String>) -> Moved {
+    pub(super) fn bent(&self, mut places: PiecePlaces, mut told: Vec<String>) -> Moved {
         let mut narrowest: Option<(String, Narrow)> = None;
         for limb in Limb::arms(self.body) {
             let mine = match self.sleeves {
