@@ -63,7 +63,11 @@ impl Element<2> for Bands {
     }
 
     /// The pull keeps it positive: there is no compression in a band.
-    fn state(&self, e: usize, x: &[Vec3; 2], _: Projection) -> Blocks<2> {
+    fn state(&self, e: usize, x: &[Vec3; 2], form: Projection) -> Blocks<2> {
+        if form == Projection::Bound {
+            let h = Matrix3::identity() * (self.0[e].stiffness / self.0[e].length);
+            return [[h, -h], [-h, h]];
+        }
         let (d, reach, strain) = self.0[e].stretch(x);
         if strain <= 0.0 {
             return [[Matrix3::zeros(); 2]; 2];

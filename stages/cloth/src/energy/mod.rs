@@ -22,6 +22,7 @@ pub mod membrane;
 mod models;
 mod places;
 mod potential;
+mod seam_spring;
 mod strain_limit;
 mod subset;
 
@@ -38,6 +39,7 @@ pub use load::DeadLoad;
 pub use models::{Bending, Membrane, Models};
 pub use places::Places;
 pub use potential::{Energy, Projection, Resistance, matrix_of, total_gradient, total_value, write_matrix};
+pub use seam_spring::SeamSprings;
 pub use strain_limit::StrainLimit;
 pub use subset::Subset;
 pub use toile_geometry::Vec3;

@@ -17,6 +17,9 @@ pub enum Projection {
     /// The same, but this share (0 to 1) of compressive stress counts: nearer to the exact matrix,
     /// and mostly positive near rest.
     Compressed(f64),
+    /// A bound of it for springs: no smaller than it at any positions. Other energies give the
+    /// positive semi-definite matrix.
+    Bound,
 }
 
 impl Projection {
@@ -25,7 +28,7 @@ impl Projection {
     pub fn compression(self) -> f64 {
         match self {
             Self::Exact => 1.0,
-            Self::PositiveSemiDefinite => 0.0,
+            Self::PositiveSemiDefinite | Self::Bound => 0.0,
             Self::Compressed(share) => share,
         }
     }

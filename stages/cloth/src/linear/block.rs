@@ -115,6 +115,23 @@ impl BlockMatrix {
         }
     }
 
+    /// For each row a bound of the sum of the norms of its blocks: that of the greatest absolute
+    /// row sum of each block and of its transpose.
+    #[must_use]
+    pub fn row_sums(&self) -> Vec<f64> {
+        let norm = |b: &Matrix3<f64>| {
+            let rows = b.abs().column_sum().max();
+            (rows * b.abs().row_sum().max()).sqrt()
+        };
+        let mut sums: Vec<f64> = self.values.iter().take(self.rows()).map(norm).collect();
+        for (i, j, slot) in self.pattern.upper() {
+            let size = norm(&self.values[slot as usize]);
+            sums[i as usize] += size;
+            sums[j as usize] += size;
+        }
+        sums
+    }
+
     /// The matrix times `x`.
     #[must_use]
     pub fn times(&self, x: &[Vec3]) -> Vec<Vec3> {

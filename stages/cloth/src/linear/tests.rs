@@ -82,3 +82,15 @@ fn a_scalar_factor_solves_the_three_axes_apart() {
         assert!((ax - b).norm() < 1e-13);
     }
 }
+
+#[test]
+fn no_row_of_a_product_is_longer_than_the_sum_of_its_row() {
+    let a = chain(30, 0.3);
+    let sums = a.row_sums();
+    for seed in 0..50 {
+        let unit = |i: usize| Vec3::new((i as f64 + seed as f64).sin(), (2.0 * i as f64).cos(), seed as f64);
+        let x: Vec<Vec3> = (0..30).map(|i| unit(i).normalize()).collect();
+        let y = a.times(&x);
+        assert!(y.iter().zip(&sums).all(|(y, sum)| y.norm() <= sum * (1.0 + 1e-12)));
+    }
+}

@@ -23,6 +23,15 @@ pub struct Response {
 /// Greatest penalty stiffness, as a share of the unstable one.
 const PENALTY_SHARE: f64 = 0.5;
 
+/// How a solid pushes out cloth that starts in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pushed {
+    /// The depth from which it does, m.
+    pub(super) reach: f64,
+    /// The speed at which it does, m/s.
+    pub(super) speed: f64,
+}
+
 /// What the response depends on.
 pub(super) struct Answer<'a> {
     pub(super) response: Response,
@@ -32,6 +41,8 @@ pub(super) struct Answer<'a> {
     pub(super) dt: f64,
     /// Coefficient of friction.
     pub(super) friction: f64,
+    /// Farthest that a node is lifted to the contact distance, m.
+    pub(super) lift: f64,
 }
 
 impl Answer<'_> {
@@ -50,7 +61,7 @@ impl Answer<'_> {
         let back = -self.response.restitution * approach;
         Some(match (gap < 0.0, back > 0.0) {
             // The node is lifted to the contact distance, which is no velocity.
-            (true, _) => ((-gap).max(back), approach.max(back).max(0.0)),
+            (true, _) => ((-gap).min(self.lift).max(back), approach.max(back).max(0.0)),
             (false, false) => (-gap, -gap),
             // The node moves back by the rest of its move.
             (false, true) => (-gap - self.response.restitution * (approach + gap), back),
@@ -58,14 +69,15 @@ impl Answer<'_> {
     }
 }
 
-/// The nearest places of the body for vertices that move.
+/// The nearest places of the body for vertices that move, where they are nearer than their way and
+/// `within`, m.
 pub(super) fn nearest_on_body(
     collider: Collider<'_>,
     x: &[Vec3],
     moves: &[Vec3],
-    offset: f64,
+    within: f64,
 ) -> Vec<Option<Nearest>> {
-    let within: Vec<f64> = moves.iter().map(|m| offset + m.norm()).collect();
+    let within: Vec<f64> = moves.iter().map(|m| within + m.norm()).collect();
     collider.surface.nearest(x, &within)
 }
 

@@ -5,6 +5,7 @@ use crate::error::ClothError;
 use crate::scene::SceneError;
 use crate::statics::report::error::remedy;
 use crate::statics::report::start::StartError;
+use toile_geometry::Vec3;
 
 /// Why a motion did not end.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -37,6 +38,8 @@ pub enum MotionError {
         time: f64,
         /// Seams whose pairs seem to run against each other.
         reversed: Vec<String>,
+        /// The vertices where the motion ended, m.
+        positions: Vec<Vec3>,
     },
     /// A fault of the initial positions.
     #[error(transparent)]
@@ -65,8 +68,29 @@ pub enum MotionError {
         time: f64,
         /// The widest seam that is still open, m; 0 where none is.
         gap: f64,
+        /// The vertices where the motion ended, m.
+        positions: Vec<Vec3>,
     },
     /// The caller asked to stop.
     #[error("stopped")]
     Stopped,
+}
+
+impl MotionError {
+    /// The vertices where the motion ended, m, where the error tells them.
+    #[must_use]
+    pub fn so_far(&self) -> Option<&[Vec3]> {
+        match self {
+            Self::SeamNotClosed { positions, .. } | Self::Timeout { positions, .. } => Some(positions),
+            _ => None,
+        }
+    }
+
+    /// The same error with the positions that `change` makes of its own.
+    pub(super) fn with_positions(mut self, change: impl FnOnce(Vec<Vec3>) -> Vec<Vec3>) -> Self {
+        if let Self::SeamNotClosed { positions, .. } | Self::Timeout { positions, .. } = &mut self {
+            *positions = change(std::mem::take(positions));
+        }
+        self
+    }
 }

@@ -14,7 +14,10 @@ const STABLE: f64 = 0.8;
 pub enum Method {
     /// Central differences: explicit, of second order, undamped, with as many small steps as
     /// stability needs.
-    CentralDifferences,
+    CentralDifferences {
+        /// Shortest step, s: vertices too light for it get more inertia. 0 for true motion.
+        least: f64,
+    },
     /// Implicit Euler: stable at any step, damps motion that the step does not resolve.
     ImplicitEuler {
         /// Greatest residual force on a vertex, N.
@@ -46,11 +49,11 @@ impl Method {
         dt: f64,
     ) -> Result<Box<dyn Solver>, ClothError> {
         Ok(match self {
-            Self::CentralDifferences => {
+            Self::CentralDifferences { least } => {
                 // A whole number of stable steps fills the step, so that phases end after whole
                 // steps.
-                let steps = (dt / (STABLE * CentralDifferences::limit(model, x))).ceil().max(1.0);
-                Box::new(CentralDifferences::adaptive(dt / steps))
+                let stable = (STABLE * CentralDifferences::limit(model, x)).max(least);
+                Box::new(CentralDifferences::bounded(dt / (dt / stable).ceil().max(1.0), least))
             }
             Self::ImplicitEuler { tolerance, relative } => {
                 let mut solver = ImplicitEuler::new(dt, tolerance);
@@ -72,8 +75,20 @@ impl Method {
         matches!(self, Self::Xpbd { .. } | Self::Projective { .. })
     }
 
+    /// The shortest step for which vertices get more inertia, s.
+    pub(super) fn least_step(self) -> Option<f64> {
+        if let Self::CentralDifferences { least } = self { Some(least).filter(|l| *l > 0.0) } else { None }
+    }
+
+    /// Whether it takes elastic bands and the published seam force: solvers whose forces are the
+    /// gradients of energies do.
+    #[must_use]
+    pub fn takes_bands(self) -> bool {
+        matches!(self, Self::CentralDifferences { .. } | Self::ImplicitEuler { .. })
+    }
+
     /// Whether it makes shorter steps than the given one; a phase then ends to within one of them.
     pub(super) fn chooses_its_step(self) -> bool {
-        matches!(self, Self::CentralDifferences)
+        matches!(self, Self::CentralDifferences { .. })
     }
 }

@@ -14,6 +14,7 @@ mod method;
 mod moving;
 mod near;
 mod seams;
+mod through;
 
 #[cfg(test)]
 mod tests;
@@ -21,7 +22,10 @@ mod tests;
 pub use contact::Response;
 pub use error::MotionError;
 pub use method::Method;
+pub use seams::SeamForce;
+pub use through::Through;
 
+use crate::contact::collision_surface::CollisionSurface;
 use crate::energy::{Air, Models};
 use crate::error::ClothError;
 use crate::scene::Scene;
@@ -33,6 +37,7 @@ use fall::Falls;
 use moving::Moving;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
+use through::JOINED_GAP;
 use toile_geometry::Vec3;
 
 /// When a motion ends.
@@ -76,7 +81,9 @@ pub struct Motion {
     pub drag: f64,
     /// Stiffness-proportional damping time, s; of implicit Euler and central differences.
     pub viscosity: f64,
-    /// Speed at which the two sides of a seam are brought together, m/s.
+    /// What brings the two sides of a seam together.
+    pub seam_force: SeamForce,
+    /// The set speed at which they are brought together, m/s.
     pub closing: f64,
     /// Share of friction that acts while seams close.
     pub sewing_friction: f64,
@@ -88,6 +95,8 @@ pub struct Motion {
     pub strain_limit: Option<f64>,
     /// How the body answers cloth that touches it.
     pub response: Response,
+    /// How cloth passes through cloth while its seams close; `None` where it does not.
+    pub through: Option<Through>,
     /// When to end.
     pub until: Until,
     /// Wall time at most.
@@ -130,12 +139,14 @@ impl Default for Motion {
             dt: 1.0 / 240.0,
             drag: 0.0,
             viscosity: 0.0,
+            seam_force: SeamForce::Speed,
             closing: 0.5,
             sewing_friction: 1.0,
             join_gap: 5e-4,
             calming: Calming::NONE,
             strain_limit: None,
             response: Response::default(),
+            through: None,
             until: Until::Phases { longest: LONGEST },
             budget: Duration::from_secs(600),
         }
@@ -216,24 +227,50 @@ impl Motion {
         stopper: &Stopper,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
+        self.run_around(scene, collider, &[], stopper, progress)
+    }
+
+    /// The same; where cloth is sewn through cloth, it is sewn on the first of the solids `around`,
+    /// which are thinner than the collider, and pushed out by each next one.
+    ///
+    /// # Errors
+    /// Every [`MotionError`].
+    pub fn run_around(
+        &self,
+        scene: &Scene,
+        collider: Option<Collider<'_>>,
+        around: &[&dyn CollisionSurface],
+        stopper: &Stopper,
+        progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Moved, MotionError> {
         scene.check()?;
         if self.method.takes_one_fabric() {
             one_fabric(scene)?;
         }
         let pieces = Pieces::new(scene);
-        let start = check::<MotionError>(scene, collider.map(|c| c.surface), self.join_gap)?;
         let falls = Falls::of(scene, collider, &pieces);
         let (clock, budget, asked) = (Instant::now(), self.budget, stopper.clone());
         let stopper = Stopper::when(move || asked.is_up() || clock.elapsed() > budget);
-        let mut run = MotionRun { settings: self, scene, collider, pieces, falls, clock, stopper, progress };
-        let open = Moving::open(&run, start)?;
+        let mut run = MotionRun {
+            settings: self,
+            scene,
+            collider,
+            around,
+            scene_vertex: (0..scene.rest.len() as u32).collect(),
+            points: pieces.point.clone(),
+            pieces,
+            falls,
+            clock,
+            stopper,
+            progress,
+        };
         match self.until {
             Until::Sewn { longest } => {
-                let sewn = run.sew(open, longest)?;
+                let sewn = run.sewn(longest)?;
                 Ok(run.finish(sewn, true))
             }
-            Until::Phases { longest } => run.phases(open, longest),
-            Until::Rest { speed, energy, longest } => run.rest(open, speed, energy, longest),
+            Until::Phases { longest } => run.phases(longest),
+            Until::Rest { speed, energy, longest } => run.rest(speed, energy, longest),
         }
     }
 }
@@ -252,7 +289,14 @@ struct MotionRun<'a> {
     settings: &'a Motion,
     scene: &'a Scene,
     collider: Option<Collider<'a>>,
+    /// Thinner solids, on the first of which the cloth is sewn; empty for the body alone.
+    around: &'a [&'a dyn CollisionSurface],
+    /// The mesh that moves.
     pieces: Pieces,
+    /// The vertex of the scene that each vertex of the mesh is.
+    scene_vertex: Vec<u32>,
+    /// The sewn point of each vertex of the scene.
+    points: Vec<u32>,
     falls: Option<Falls>,
     clock: Instant,
     /// Stops where the caller does, and when the time limit is reached.
@@ -260,9 +304,25 @@ struct MotionRun<'a> {
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
 }
 
-impl MotionRun<'_> {
-    fn phases(&mut self, moving: Moving, longest: f64) -> Result<Moved, MotionError> {
-        let mut moving = self.sew(moving, longest)?;
+impl<'a> MotionRun<'a> {
+    /// The solid on which the seams close.
+    fn sewn_on(&self) -> Option<Collider<'a>> {
+        self.collider.map(|c| Collider { surface: self.around.first().copied().unwrap_or(c.surface), ..c })
+    }
+
+    /// The garment with its seams joined.
+    fn sewn(&mut self, longest: f64) -> Result<Moving, MotionError> {
+        if let Some(through) = self.settings.through {
+            return self.sewn_through(through, longest);
+        }
+        let surface = self.collider.map(|c| c.surface);
+        let start = check::<MotionError>(self.scene, surface, self.settings.join_gap)?;
+        let open = Moving::open(self, start)?;
+        self.sew(open, longest)
+    }
+
+    fn phases(&mut self, longest: f64) -> Result<Moved, MotionError> {
+        let mut moving = self.sewn(longest)?;
         moving.set_damping(self.settings.drag, 1.0);
         let mut sewn_for = moving.progress.time;
         for phase in &self.scene.phases {
@@ -297,14 +357,17 @@ impl MotionRun<'_> {
                 break;
             }
         }
+        if self.settings.through.is_some() && moving.seams_met(JOINED_GAP * moving.edge()) {
+            return moving.join(self);
+        }
         self.closed(&moving)?;
         Ok(moving)
     }
 
-    fn rest(&mut self, moving: Moving, speed: f64, energy: f64, longest: f64) -> Result<Moved, MotionError> {
+    fn rest(&mut self, speed: f64, energy: f64, longest: f64) -> Result<Moved, MotionError> {
         let last = self.scene.phases.last();
         let (gravity, air) = (last.map(|p| p.gravity).unwrap_or_default(), last.and_then(|p| p.air));
-        let mut moving = self.sew(moving, longest)?;
+        let mut moving = self.sewn(longest)?;
         moving.set_gravity(gravity);
         moving.set_air(air);
         let (began, calming, drag) = (moving.progress.time, self.settings.calming, self.settings.drag);
@@ -331,7 +394,17 @@ impl MotionRun<'_> {
     }
 
     fn step(&mut self, moving: &mut Moving, end: f64) -> Result<(), MotionError> {
-        let stepped = moving.step(self.settings, self.collider, end);
+        self.step_on(self.collider, moving, end)
+    }
+
+    /// One step on a solid.
+    fn step_on(
+        &mut self,
+        solid: Option<Collider<'_>>,
+        moving: &mut Moving,
+        end: f64,
+    ) -> Result<(), MotionError> {
+        let stepped = moving.step(self.settings, solid, end);
         if let Err(MotionError::Cloth(ClothError::Stopped)) = stepped {
             return Err(self.stopped(moving));
         }
@@ -352,7 +425,10 @@ impl MotionRun<'_> {
     fn stopped(&self, moving: &Moving) -> MotionError {
         let (seconds, Progress { time, gap, .. }) = (self.clock.elapsed(), moving.progress);
         match seconds > self.settings.budget {
-            true => MotionError::Timeout { seconds: seconds.as_secs_f64(), time, gap },
+            true => {
+                let positions = self.vertices(moving, &moving.state.x);
+                MotionError::Timeout { seconds: seconds.as_secs_f64(), time, gap, positions }
+            }
             false => MotionError::Stopped,
         }
     }
@@ -360,9 +436,11 @@ impl MotionRun<'_> {
     fn closed(&self, moving: &Moving) -> Result<(), MotionError> {
         match moving.seams.widest(&moving.state.x) {
             Some((pair, gap)) => {
-                let seam = seams::name_of(self.scene, &self.pieces, pair);
+                let vertex = self.scene_vertex.get(pair[0] as usize).copied().unwrap_or(0);
+                let seam = seams::name_of(self.scene, &self.points, vertex);
                 let reversed = probably_reversed(self.scene, &self.scene.positions);
-                Err(MotionError::SeamNotClosed { seam, gap, time: moving.progress.time, reversed })
+                let (time, positions) = (moving.progress.time, moving.state.x.clone());
+                Err(MotionError::SeamNotClosed { seam, gap, time, reversed, positions })
             }
             None => Ok(()),
         }
@@ -372,18 +450,19 @@ impl MotionRun<'_> {
         if let Some(collider) = self.collider {
             moving.restore_clearance(collider);
         }
-        let spread = |values: &[Vec3]| match moving.is_joined {
-            true => self.pieces.spread(values),
-            false => values.to_vec(),
-        };
         Moved {
-            positions: spread(&moving.state.x),
-            velocities: spread(&moving.state.v),
+            positions: self.vertices(&moving, &moving.state.x),
+            velocities: self.vertices(&moving, &moving.state.v),
             progress: moving.progress,
             converged,
             is_jammed: moving.is_jammed,
             energy: moving.energy(),
             joined_at: moving.joined_at,
         }
+    }
+
+    /// The values of the mesh's vertices from those of the cloth that moves.
+    fn vertices(&self, moving: &Moving, values: &[Vec3]) -> Vec<Vec3> {
+        if moving.is_joined { self.pieces.spread(values) } else { values.to_vec() }
     }
 }

@@ -1,18 +1,20 @@
 //! The moving sheet: one step with all its corrections, and the joining of seams. Cost: a step of
 //! the solver, and contacts linear in the pairs.
 
-use super::contact::{Answer, limit_step, nearest_on_body, respond_to_body, respond_to_self_contact};
+use super::contact::{Answer, Pushed, limit_step, nearest_on_body, respond_to_body, respond_to_self_contact};
 use super::near::Near;
-use super::seams::Seams;
+use super::seams::{SeamForce, Seams};
 use super::{Motion, MotionError, MotionRun, Progress, Vec3};
 use crate::constraint::Provot;
-use crate::energy::{Air, AirDrag, Cloth};
+use crate::energy::{Air, AirDrag, Band, Bands, Cloth, SeamSprings};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::solver::{Model, Report, Solver, State};
+use crate::solver::{CentralDifferences, Model, Report, Solver, State};
+use crate::statics::drive::contour::uncross;
 use crate::statics::drive::solve::Collider;
 use crate::statics::forces::clearance::clearance;
+use crate::statics::forces::penetration::pierced;
 use crate::statics::levels::assemble::cloths;
 use crate::statics::report::start::{check_lying, crossing, crossings};
 use toile_geometry::cloth_tree::ClothTree;
@@ -60,6 +62,8 @@ pub(super) struct Moving {
     /// Whether contacts held the whole cloth back in the last step, so that it is in the air and
     /// not at rest.
     pub(super) is_jammed: bool,
+    /// How the body pushes out what starts in it; `None` where nothing does.
+    pub(super) pushed: Option<Pushed>,
 }
 
 impl Moving {
@@ -68,11 +72,18 @@ impl Moving {
         let sheet = run.pieces.open_sheet(&cloths(run.scene))?;
         let pairs = run.pieces.seam_pairs();
         let fixed: Vec<bool> = run.pieces.pinned.clone();
-        let mut moving = Self::new(run, sheet, &fixed, State::at_rest(start))?;
+        let springs = (run.pieces.springs(true), pairs.clone());
+        let mut moving = Self::new(run, sheet, &fixed, springs, State::at_rest(start))?;
         moving.is_joined = pairs.is_empty();
-        moving.seams = Seams { pairs };
+        moving.seams = Seams::new(pairs, run.settings.seam_force);
+        if run.settings.through.is_some() {
+            moving.tree = None;
+            return Ok(moving);
+        }
+        let is_sewn =
+            moving.seams.widest(&moving.state.x).is_some_and(|(_, gap)| gap < run.settings.join_gap);
         moving.tree = moving.tree.map(|t| t.sewing(run.pieces.point.clone()));
-        if let Some(tree) = &moving.tree {
+        if let Some(tree) = moving.tree.as_ref().filter(|_| !is_sewn) {
             let (x, panel) = (&moving.state.x, &run.pieces.panel);
             if let Some(error) = crossing(run.scene, panel, x, &crossings(tree, panel, x)) {
                 return Err(error.into());
@@ -84,38 +95,81 @@ impl Moving {
 
     /// Joins each pair to one vertex at the common position, with the common momentum.
     pub(super) fn join(self, run: &MotionRun<'_>) -> Result<Self, MotionError> {
-        let sheet = run.pieces.sewn_sheet(&cloths(run.scene))?;
-        let mut fixed = vec![false; run.pieces.points];
-        for (v, &p) in run.pieces.pinned.iter().enumerate() {
-            fixed[run.pieces.point[v] as usize] |= p;
-        }
         let masses = self.sheet.masses();
         let state = State {
             x: run.pieces.sew(&self.state.x, masses),
             v: run.pieces.sew(&self.state.v, masses),
             time: self.state.time,
         };
-        let mut moving = Self::new(run, sheet, &fixed, state)?;
+        let joined_at = self.seams.widest(&self.state.x).map(|(_, gap)| gap);
+        let mut moving = self.goes_on(run, state)?;
+        moving.joined_at = joined_at;
+        Ok(moving)
+    }
+
+    /// The sewn cloth of the run's mesh in another state of its nodes, in the same time.
+    pub(super) fn goes_on(self, run: &MotionRun<'_>, state: State) -> Result<Self, MotionError> {
+        let sheet = run.pieces.sewn_sheet(&cloths(run.scene))?;
+        let mut fixed = vec![false; run.pieces.points];
+        for (v, &p) in run.pieces.pinned.iter().enumerate() {
+            fixed[run.pieces.point[v] as usize] |= p;
+        }
+        let mut moving = Self::new(run, sheet, &fixed, (run.pieces.springs(false), Vec::new()), state)?;
         moving.set_gravity(self.model.gravity);
         moving.set_air(self.model.air.map(|a| a.air));
-        moving.joined_at = self.seams.widest(&self.state.x).map(|(_, gap)| gap);
+        moving.set_damping(self.model.drag, self.friction_share);
+        moving.joined_at = self.joined_at;
         moving.progress = Progress { gap: 0.0, ..self.progress };
         moving.is_joined = true;
         Ok(moving)
     }
 
-    fn new(run: &MotionRun<'_>, sheet: Sheet, fixed: &[bool], state: State) -> Result<Self, MotionError> {
+    /// Takes crossings of the sewn cloth out of itself; returns how many are left.
+    pub(super) fn uncross(&mut self) -> usize {
+        let Some(tree) = &self.tree else { return 0 };
+        uncross(&self.sheet, tree, &self.model.fixed, &mut self.state.x)
+    }
+
+    /// Whether the body passes through the cloth between its nodes.
+    pub(super) fn is_pierced(&self, collider: Option<Collider<'_>>) -> bool {
+        collider.is_some_and(|c| pierced(&self.sheet, c.surface, &self.state.x) > 0)
+    }
+
+    fn new(
+        run: &MotionRun<'_>,
+        sheet: Sheet,
+        fixed: &[bool],
+        (bands, pulled): (Vec<Band>, Vec<[u32; 2]>),
+        state: State,
+    ) -> Result<Self, MotionError> {
         let settings = run.settings;
         let (fabrics, first) = (cloths(run.scene), [run.scene.fabric_of(0)]);
         let mut model = Model::of(&sheet).pinned(|v| fixed[v]);
-        let cloth =
-            Cloth { fixed, fabrics: &fabrics, fabric: &|t| run.pieces.cloth(t), ..Cloth::of(&sheet, &first) };
+        let uncut = run.pieces.uncut().transpose()?;
+        let cloth = Cloth {
+            fixed,
+            cut: uncut.as_ref().unwrap_or(&sheet),
+            fabrics: &fabrics,
+            fabric: &|t| run.pieces.cloth(t),
+            ..Cloth::of(&sheet, &first)
+        };
         model = model.made_of(settings.models, &cloth)?;
+        if !bands.is_empty() {
+            model = model.with(Bands::new(bands));
+        }
         (model.drag, model.viscosity) = (settings.drag, settings.viscosity);
         model.stopper = run.stopper.clone();
+        if let SeamForce::Linear(stiffness) = settings.seam_force
+            && !pulled.is_empty()
+        {
+            model = model.with(SeamSprings::new(pulled, stiffness));
+        }
+        if let Some(least) = settings.method.least_step() {
+            model.inertia = CentralDifferences::inertia(&model, &state.x, least);
+        }
         let solver = settings.method.solver(&sheet, &model, &state.x, first[0], settings.dt)?;
         let inverse =
-            model.masses.iter().zip(&model.fixed).map(|(m, f)| if *f { 0.0 } else { 1.0 / m }).collect();
+            model.inertia().iter().zip(&model.fixed).map(|(m, f)| if *f { 0.0 } else { 1.0 / m }).collect();
         let tree = run.scene.self_collision.then(|| ClothTree::new(sheet.triangles(), &state.x));
         let friction = node_friction(run, &sheet, &fabrics);
         Ok(Self {
@@ -137,6 +191,7 @@ impl Moving {
             is_joined: false,
             joined_at: None,
             is_jammed: false,
+            pushed: None,
         })
     }
 
@@ -185,6 +240,7 @@ impl Moving {
         for (v, m) in moves.iter().enumerate() {
             self.state.x[v] = start[v] + m;
         }
+        self.seams.hold_met(&self.state.x, settings.join_gap);
         let fastest = moves.iter().map(|m| m.norm()).fold(0.0, f64::max);
         self.progress = Progress {
             time: self.progress.time + report.advanced,
@@ -225,7 +281,7 @@ impl Moving {
     ) -> Result<(Report, Vec<Vec3>), MotionError> {
         let start = self.state.x.clone();
         let foretold: Vec<Vec3> = self.state.v.iter().map(|v| v * dt).collect();
-        let near = Near::of(self.tree.as_ref(), collider, &start, &foretold, self.offset);
+        let near = Near::of(self.tree.as_ref(), collider, &start, &foretold, self.offset, self.reach());
         let (mut advanced, mut is_free, least) = (0.0, true, SHORTEST * settings.dt);
         let report = loop {
             self.model.stopper.check()?;
@@ -257,6 +313,17 @@ impl Moving {
         self.is_jammed = self.limit_step(collider, is_free, &start, &mut moves) < JAMMED;
         self.update_velocities(&moves, &wanted, &vec![Vec3::zeros(); moves.len()], advanced);
         Ok((report, moves))
+    }
+
+    /// The depth from which the body pushes out what starts in it, m.
+    fn reach(&self) -> f64 {
+        self.pushed.map_or(0.0, |p| p.reach)
+    }
+
+    /// Mean length of the edges, m.
+    pub(super) fn edge(&self) -> f64 {
+        let edges = self.sheet.edges();
+        edges.iter().map(|e| e.rest_length).sum::<f64>() / edges.len().max(1) as f64
     }
 
     /// Lifts triangles that dip into the body between their vertices.
@@ -319,7 +386,7 @@ impl Moving {
             limit.apply(&self.sheet, &self.model.fixed, &mut ends);
             moves.iter_mut().zip(ends.iter().zip(x)).for_each(|(m, (e, x))| *m = e - x);
         }
-        self.seams.close(x, moves, &self.model.masses, &self.model.fixed, settings.closing * dt);
+        self.seams.close(x, moves, &self.inverse, settings.closing * dt);
         if let Some(tree) = &self.tree {
             let found = near.is_none().then(|| tree.pairs(x, moves, offset));
             let pairs = found.as_ref().or(near.map(|n| &n.pairs)).map_or(&[][..], |p| p);
@@ -336,10 +403,14 @@ impl Moving {
         let before = moves.to_vec();
         let pushed = match collider {
             Some(collider) => {
-                let surface =
-                    near.map_or_else(|| nearest_on_body(collider, x, moves, offset), |n| n.surface(x));
+                let surface = near.map_or_else(
+                    || nearest_on_body(collider, x, moves, offset + self.reach()),
+                    |n| n.surface(x),
+                );
                 let friction = collider.friction * self.friction_share;
-                let answer = Answer { response: settings.response, inverse: &self.inverse, dt, friction };
+                let lift = self.pushed.map_or(f64::INFINITY, |p| p.speed * dt);
+                let answer =
+                    Answer { response: settings.response, inverse: &self.inverse, dt, friction, lift };
                 respond_to_body(&surface, &answer, moves, offset)
             }
             None => vec![Vec3::zeros(); moves.len()],
@@ -366,7 +437,7 @@ impl Moving {
         let short = |moves: &mut [Vec3]| {
             self.tree.as_ref().map_or(1.0, |tree| limit_step(tree, start, moves, offset))
         };
-        if is_free { among_themselves(&self.model.masses, moves, short) } else { short(moves) }
+        if is_free { among_themselves(self.model.inertia(), moves, short) } else { short(moves) }
     }
 }
 

@@ -19,16 +19,17 @@ pub(super) struct Near {
 
 impl Near {
     /// Everything that nodes at `x` may approach to within `offset` while they move by about
-    /// `moves`.
+    /// `moves`, and the body for nodes up to `reach` deep in it.
     pub(super) fn of(
         tree: Option<&ClothTree>,
         collider: Option<Collider<'_>>,
         x: &[Vec3],
         moves: &[Vec3],
         offset: f64,
+        reach: f64,
     ) -> Self {
         let pairs = tree.map_or_else(Vec::new, |t| t.pairs(x, moves, offset + 2.0 * STRAY));
-        let within: Vec<f64> = moves.iter().map(|m| offset + m.norm() + STRAY).collect();
+        let within: Vec<f64> = moves.iter().map(|m| offset + reach + m.norm() + STRAY).collect();
         let surface = collider.map_or_else(Vec::new, |c| c.surface.nearest(x, &within));
         Self { pairs, surface, at: x.to_vec() }
     }

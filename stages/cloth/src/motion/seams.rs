@@ -1,16 +1,43 @@
 //! Seams that close at a set speed. Cost: O(1) a pair.
 
 use crate::scene::Scene;
-use crate::statics::levels::pieces::Pieces;
 use toile_geometry::Vec3;
+
+/// What brings the two sides of a seam together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SeamForce {
+    /// They come nearer at the set speed.
+    Speed,
+    /// The published force of each pair, in proportion to its gap, N/m. Pairs that have met are
+    /// held together.
+    Linear(f64),
+}
 
 /// Pairs of vertices that close.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Seams {
     pub(super) pairs: Vec<[u32; 2]>,
+    /// Whether only pairs that have met are brought together, by pair; empty where all are.
+    held: Vec<bool>,
 }
 
 impl Seams {
+    /// Pairs that a force brings together.
+    pub(super) fn new(pairs: Vec<[u32; 2]>, force: SeamForce) -> Self {
+        let held = match force {
+            SeamForce::Speed => Vec::new(),
+            SeamForce::Linear(_) => vec![false; pairs.len()],
+        };
+        Self { pairs, held }
+    }
+
+    /// Holds the pairs from now on whose gaps are below `gap`, m.
+    pub(super) fn hold_met(&mut self, x: &[Vec3], gap: f64) {
+        for (held, [a, b]) in self.held.iter_mut().zip(&self.pairs) {
+            *held |= (x[*a as usize] - x[*b as usize]).norm() < gap;
+        }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
@@ -22,15 +49,17 @@ impl Seams {
     }
 
     /// Changes the moves so that the gap of each pair shrinks by at most `most`, with the momentum
-    /// of the pair kept.
-    pub(super) fn close(&self, x: &[Vec3], moves: &mut [Vec3], masses: &[f64], fixed: &[bool], most: f64) {
-        for &[a, b] in &self.pairs {
+    /// of the pair kept; `inverse` is the inverse inertia of each vertex, 0 where it is held.
+    pub(super) fn close(&self, x: &[Vec3], moves: &mut [Vec3], inverse: &[f64], most: f64) {
+        for (k, &[a, b]) in self.pairs.iter().enumerate() {
+            if self.held.get(k) == Some(&false) {
+                continue;
+            }
             let (a, b) = (a as usize, b as usize);
             let gap = x[b] - x[a];
             let length = gap.norm();
             let wanted = if length > most { gap * (-most / length) } else { -gap };
-            let weight = |v: usize| if fixed[v] { 0.0 } else { 1.0 / masses[v] };
-            let (wa, wb) = (weight(a), weight(b));
+            let (wa, wb) = (inverse[a], inverse[b]);
             if wa + wb > 0.0 {
                 let change = (wanted - (moves[b] - moves[a])) / (wa + wb);
                 moves[a] -= change * wa;
@@ -40,10 +69,10 @@ impl Seams {
     }
 }
 
-/// The seam that a pair belongs to.
-pub(super) fn name_of(scene: &Scene, pieces: &Pieces, pair: [u32; 2]) -> String {
-    let point = pieces.point[pair[0] as usize];
-    let has = |p: &[u32; 2]| pieces.point[p[0] as usize] == point;
+/// The seam that a vertex of the scene belongs to, by the sewn point of each vertex.
+pub(super) fn name_of(scene: &Scene, points: &[u32], vertex: u32) -> String {
+    let point = |v: u32| points.get(v as usize);
+    let has = |p: &[u32; 2]| point(p[0]) == point(vertex);
     let seam = scene.seams.iter().find(|s| s.pairs.iter().any(has));
     seam.map_or("?".into(), |s| s.name.clone())
 }

@@ -13,6 +13,9 @@ use crate::stopper::Stopper;
 pub struct Model {
     /// Mass of each vertex, kg.
     pub masses: Vec<f64>,
+    /// Inertia of each vertex where it is more than its mass, kg; empty where it is its mass. Only
+    /// central differences take another.
+    pub inertia: Vec<f64>,
     /// Acceleration of gravity, m/s².
     pub gravity: Vec3,
     /// All energies but gravity.
@@ -64,6 +67,7 @@ impl Model {
     pub fn of(sheet: &Sheet) -> Self {
         Self {
             masses: sheet.masses().to_vec(),
+            inertia: Vec::new(),
             gravity: Vec3::new(0.0, -9.81, 0.0),
             energies: Vec::new(),
             fixed: sheet.masses().iter().map(|&m| m == 0.0).collect(),
@@ -147,6 +151,12 @@ impl Model {
         check_parameter("drag", self.drag, |d| d >= 0.0, "0 or more 1/s")?;
         check_parameter("viscosity", self.viscosity, |d| d >= 0.0, "0 or more s")?;
         self.air.as_ref().map_or(Ok(()), |a| a.air.check())
+    }
+
+    /// Inertia of each vertex, kg.
+    #[must_use]
+    pub fn inertia(&self) -> &[f64] {
+        if self.inertia.is_empty() { &self.masses } else { &self.inertia }
     }
 
     /// Gravity as an energy.

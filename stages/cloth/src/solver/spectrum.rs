@@ -19,13 +19,17 @@ const SUBSPACE_ROUNDS: usize = 30;
 /// Greatest angular frequency at `x`, rad/s; a lower bound, right to three digits.
 #[must_use]
 pub fn omega_max(model: &Model, x: &[Vec3]) -> f64 {
-    let k = model.stiffness(x, Projection::PositiveSemiDefinite);
-    let scale: Vec<f64> = scaling(model);
-    let n = x.len();
+    omega_max_of(&model.stiffness(x, Projection::PositiveSemiDefinite), model.inertia(), &model.fixed)
+}
+
+/// The same of a stiffness matrix and the inertia of each vertex, kg.
+pub(super) fn omega_max_of(k: &BlockMatrix, inertia: &[f64], fixed: &[bool]) -> f64 {
+    let scale: Vec<f64> = scaling(inertia, fixed);
+    let n = inertia.len();
     let mut q = start(n, &scale);
     let (mut basis, mut alpha, mut beta): (Vec<Vec<Vec3>>, Vec<f64>, Vec<f64>) = (vec![], vec![], vec![]);
     for _ in 0..LANCZOS_STEPS.min(3 * n) {
-        let mut w = scaled(&k, &scale, &q);
+        let mut w = scaled(k, &scale, &q);
         alpha.push(dot(&w, &q));
         basis.push(q);
         for b in &basis {
@@ -109,13 +113,9 @@ fn seed(n: usize, s: f64, mass: &[f64]) -> Vec<Vec3> {
         .collect()
 }
 
-fn scaling(model: &Model) -> Vec<f64> {
-    model
-        .masses
-        .iter()
-        .zip(&model.fixed)
-        .map(|(m, f)| if *f || *m <= 0.0 { 0.0 } else { m.sqrt().recip() })
-        .collect()
+fn scaling(inertia: &[f64], fixed: &[bool]) -> Vec<f64> {
+    let of = |(m, f): (&f64, &bool)| if *f || *m <= 0.0 { 0.0 } else { m.sqrt().recip() };
+    inertia.iter().zip(fixed).map(of).collect()
 }
 
 fn scaled(k: &BlockMatrix, scale: &[f64], q: &[Vec3]) -> Vec<Vec3> {

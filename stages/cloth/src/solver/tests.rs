@@ -328,3 +328,26 @@ fn central_differences_keep_both_momenta() {
         }
     }
 }
+
+#[test]
+fn vertices_too_light_for_the_least_step_get_inertia_and_no_weight() {
+    let (_, _, mut model, state) = square(Layout::OneDiagonal, 8);
+    model.masses[20] *= 1e-3;
+    model.drag = 30.0;
+    let limit = CentralDifferences::limit(&model, &state.x);
+    let least = 8.0 * limit;
+    let rest = |solver: &mut CentralDifferences, model: &Model| {
+        let (mut s, mut shortest) = (state.clone(), f64::INFINITY);
+        while s.time < 2.0 {
+            shortest = shortest.min(solver.advance(model, &mut s).unwrap().advanced);
+        }
+        (s.x, shortest)
+    };
+    let (exact, short) = rest(&mut CentralDifferences::adaptive(1e-3), &model);
+    model.inertia = CentralDifferences::inertia(&model, &state.x, least);
+    assert!(model.inertia.iter().zip(&model.masses).all(|(i, m)| i >= m));
+    let (heavier, long) = rest(&mut CentralDifferences::bounded(1e-3, least), &model);
+    assert!(long >= 0.999 * least && short < 0.5 * long, "{short} {long}");
+    let apart = exact.iter().zip(&heavier).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(apart < 1e-3, "the state of rest is the same: {apart}");
+}

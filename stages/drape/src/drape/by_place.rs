@@ -71,6 +71,19 @@ pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
     }
 }
 
+/// The parameters of a stage that steps in time and stands there.
+pub(crate) fn in_time(nodes: &[Node], index: usize) -> ByPlace {
+    let sews = matches!(origin(nodes, index), Some(GarmentOrigin::Placed(_)));
+    let set = sews.then(|| ("sew_through", "true".to_owned())).into_iter().collect();
+    ByPlace { like: None, set }
+}
+
+/// The decision of a stage that steps in time.
+pub(crate) fn in_time_rule(known: &Known<'_>) -> Vec<Decision> {
+    let is_placed = matches!(origin(known.nodes, known.index), Some(GarmentOrigin::Placed(_)));
+    rule(known).filter(|_| is_placed).into_iter().collect()
+}
+
 /// The decision that follows from the stage's place, unless the file sets the parameter.
 pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
     let is_written = |name: &str| known.node().params.contains_key(name);

@@ -4,10 +4,13 @@
 //! per vertex and step, but some thousand steps a second. Limit: stiff or fine cloth makes steps
 //! tiny.
 
+use super::by_place;
 use super::models::{BendingModel, MembraneModel, models};
 use super::motion::{InTime, drape};
 use toile_cloth::motion::Method;
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
+use toile_core::{ByPlace, Known, Node};
 
 /// Sews the garment and lets it fall and settle, by central differences with an adaptive step.
 ///
@@ -47,7 +50,15 @@ impl CentralDifferences {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         let models = models(self.membrane, self.bending);
-        let course = self.motion.course(Method::CentralDifferences, models);
+        let course = self.motion.course(Method::CentralDifferences { least: 0.0 }, models);
         drape(&course, garment, garment, collider, phases, cx)
+    }
+
+    fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
+        by_place::in_time(nodes, index)
+    }
+
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
+        by_place::in_time_rule(known)
     }
 }

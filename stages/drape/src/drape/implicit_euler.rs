@@ -4,10 +4,13 @@
 //! factorizations a step. Limit: contacts act after the step, so `dt` above 8 ms lets tight
 //! garments slip.
 
+use super::by_place;
 use super::models::{BendingModel, MembraneModel, models};
 use super::motion::{InTime, drape};
 use toile_cloth::motion::Method;
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
+use toile_core::{ByPlace, Known, Node};
 
 /// Sews the garment and lets it fall and settle, by implicit Euler steps.
 ///
@@ -55,5 +58,13 @@ impl ImplicitEuler {
         let method = Method::ImplicitEuler { tolerance: self.tolerance, relative: self.conjugate_gradients };
         let course = self.motion.course(method, models(self.membrane, self.bending));
         drape(&course, garment, garment, collider, phases, cx)
+    }
+
+    fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
+        by_place::in_time(nodes, index)
+    }
+
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
+        by_place::in_time_rule(known)
     }
 }

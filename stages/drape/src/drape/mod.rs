@@ -2,7 +2,7 @@
 
 mod again;
 mod asleep;
-mod by_place;
+pub(crate) mod by_place;
 mod central_differences;
 mod implicit_euler;
 mod layers;
@@ -22,8 +22,8 @@ pub use central_differences::CentralDifferences;
 pub use implicit_euler::ImplicitEuler;
 pub use mixed_precision::FactorPrecision;
 pub use models::{BendingModel, MembraneModel};
-pub use motion::InTime;
 pub(crate) use motion::{Course, moved};
+pub use motion::{InTime, SewThrough};
 pub use projective::Projective;
 pub(crate) use soften::{damping, softened, springs};
 pub use spring::SpringDraper;

@@ -1,14 +1,16 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion,
 //! and back.
 
+use super::again::thin_of;
 use crate::engine::{
-    self, MessageContext, Motions, SceneSetting, SchemeSurface, only_joins, scene_of, weld_seams,
+    self, MessageContext, Motions, SceneSetting, SchemeSurface, carries_out, scene_of, weld_seams,
 };
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
+use toile_cloth::contact::collision_surface::CollisionSurface;
 use toile_cloth::energy::{Air as EngineAir, Models};
-use toile_cloth::motion::{Method, Motion, Moved, Progress, Response, Until};
+use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Response, Through, Until};
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
 use toile_cloth::statics::drive::solve::Collider as EngineCollider;
 use toile_cloth::stopper::Stopper;
@@ -49,9 +51,37 @@ pub struct InTime {
     /// Gap below which a seam is joined.
     #[param(default = Length::mm(0.5), min = 1e-6, max = 0.1, trades)]
     pub join_gap: Length,
+    /// How seams close.
+    #[param(flatten)]
+    pub sewn: SewThrough,
     /// Wall time after which it gives up. A run that meets it is not repeatable.
     #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
     pub time_limit: f64,
+}
+
+/// How the stages that step in time sew pieces that start far apart.
+#[params]
+#[derive(Copy)]
+pub struct SewThrough {
+    /// Whether cloth passes through cloth while its seams close: for panels that start far apart,
+    /// with others in between, or in the body. The seams close on a coarse mesh, which is taken out
+    /// of itself along the contours where it crosses (Volino, Magnenat-Thalmann 2006) and carried
+    /// to the finer ones. Where the body keeps seams open or comes through the cloth, the garment
+    /// is sewn again around a thin figure of the body's pose, which grows; a note says so. Left
+    /// out, it is true behind a placement of a pattern, such as `Arrange`.
+    #[param(default = false, way)]
+    pub sew_through: bool,
+    /// Points of the coarsest mesh, on which seams close with `sew_through`; more than the garment
+    /// has for its own mesh alone.
+    #[param(default = 1500, min = 20, max = 10_000_000, unit = "vertices", trades)]
+    pub coarsest: usize,
+}
+
+impl SewThrough {
+    /// The same for the engine.
+    pub(crate) fn engine(&self) -> Option<Through> {
+        self.sew_through.then_some(Through { coarsest: self.coarsest })
+    }
 }
 
 /// Distance at which cloth is held off itself where there is no collider, m.
@@ -100,7 +130,8 @@ pub(crate) fn moved(
 ) -> Result<Garment, StageError> {
     let time = course.time;
     garment.check_solvable()?;
-    garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
+    let bands = course.motion.method.takes_bands();
+    garment.seams.iter().try_for_each(|s| carries_out(s.kind, &s.name, bands))?;
     let air = time.air();
     check_wind(&air)?;
     let card = collider.map(|c| c.scheme.card());
@@ -123,8 +154,11 @@ pub(crate) fn moved(
     let motion = Motion { until, response, ..course.motion };
     let cancel = cx.cancel().clone();
     let stopper = Stopper::when(move || cancel.is_cancelled());
-    let moved = motion.run_until_stopped(&scene, engine_collider, &stopper, &mut |p| tell(p, time, cx));
+    let moved = sewn_twice(&motion, &scene, engine_collider, collider, &stopper, time, cx);
     cx.check()?;
+    if let Some(positions) = moved.as_ref().err().and_then(MotionError::so_far) {
+        cx.so_far(at(garment, positions));
+    }
     let words = MessageContext { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
     let moved = moved.map_err(|e| words.motion(&e, &course.can))?;
     if !moved.converged {
@@ -132,6 +166,40 @@ pub(crate) fn moved(
     }
     cx.figure("motion_time", moved.progress.time, "s");
     Ok(finish(garment, &moved))
+}
+
+/// The motion; where it sews through and the body keeps seams open, once more around a thin figure.
+fn sewn_twice(
+    motion: &Motion,
+    scene: &Scene,
+    engine_collider: Option<EngineCollider<'_>>,
+    collider: Option<&Collider>,
+    stopper: &Stopper,
+    time: &InTime,
+    cx: &Context,
+) -> Result<Moved, MotionError> {
+    let first = motion.run_until_stopped(scene, engine_collider, stopper, &mut |p| tell(p, time, cx));
+    let is_open = matches!(first, Err(MotionError::SeamNotClosed { .. }));
+    let (true, true, Some(collider)) = (is_open, motion.through.is_some(), collider) else { return first };
+    let thin = thin_of(collider);
+    let around: Vec<&dyn CollisionSurface> = thin.iter().map(|f| f as &dyn CollisionSurface).collect();
+    if around.is_empty() {
+        return first;
+    }
+    cx.note(
+        "the body keeps seams open: the garment is sewn again around a thin figure, which grows to the body",
+    );
+    let second = motion.run_around(scene, engine_collider, &around, stopper, &mut |p| tell(p, time, cx));
+    if second.is_ok() { second } else { first }
+}
+
+/// The garment with its vertices at other positions.
+fn at(garment: &Garment, positions: &[Vector3<f64>]) -> Garment {
+    let mut garment = garment.clone();
+    garment.positions = positions.iter().map(|p| Point3::from(*p)).collect();
+    garment.velocities.fill(Vector3::zeros());
+    garment.starts.clear();
+    garment
 }
 
 /// Why a motion has not come to rest, whose speed is `wanted`, m/s.
@@ -175,6 +243,7 @@ impl InTime {
             dt: self.dt,
             drag: self.drag,
             join_gap: self.join_gap.metres(),
+            through: self.sewn.engine(),
             until: Until::Rest { speed: self.speed, energy: SETTLED, longest: self.longest },
             budget: Duration::from_secs_f64(self.time_limit),
             ..Motion::default()
@@ -227,8 +296,7 @@ fn tell(p: &Progress, time: &InTime, cx: &Context) -> ControlFlow<()> {
 }
 
 fn finish(garment: &Garment, moved: &Moved) -> Garment {
-    let mut garment = garment.clone();
-    garment.positions = moved.positions.iter().map(|p| Point3::from(*p)).collect();
+    let mut garment = at(garment, &moved.positions);
     garment.velocities.clone_from(&moved.velocities);
     weld_seams(&mut garment);
     garment.status = SolveStatus {

@@ -3,10 +3,13 @@
 //! Method: implicit Euler with a matrix that never changes. Cost: one factor for all, two
 //! triangular solves a turn. Limit: isotropic, converges slowly for stiff cloth and long steps.
 
+use super::by_place;
 use super::motion::{InTime, drape};
 use toile_cloth::energy::Models;
 use toile_cloth::motion::Method;
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
+use toile_core::{ByPlace, Known, Node};
 
 /// Sews the garment and lets it fall and settle, by projective dynamics.
 ///
@@ -45,5 +48,13 @@ impl Projective {
         let method = Method::Projective { iterations: self.iterations };
         let course = self.motion.course(method, Models::DEFAULT);
         drape(&course, garment, garment, collider, phases, cx)
+    }
+
+    fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
+        by_place::in_time(nodes, index)
+    }
+
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
+        by_place::in_time_rule(known)
     }
 }

@@ -4,10 +4,13 @@
 //! step. Cost: linear, no matrix. Limit: too soft where `substeps` are few, most of all in long,
 //! stiff pieces.
 
+use super::by_place;
 use super::motion::{InTime, drape};
 use toile_cloth::energy::Models;
 use toile_cloth::motion::Method;
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
+use toile_core::{ByPlace, Known, Node};
 
 /// Sews the garment and lets it fall and settle, by extended position-based dynamics.
 ///
@@ -47,5 +50,13 @@ impl Xpbd {
         let method = Method::Xpbd { substeps: self.substeps };
         let course = self.motion.course(method, Models::DEFAULT);
         drape(&course, garment, garment, collider, phases, cx)
+    }
+
+    fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
+        by_place::in_time(nodes, index)
+    }
+
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
+        by_place::in_time_rule(known)
     }
 }

@@ -2,9 +2,11 @@
 
 use toile_core::prelude::*;
 
-/// Refuses a kind of seam for solvers that join the pairs of seams, and do nothing else.
-pub(crate) fn only_joins(kind: SeamKind, name: &str) -> Result<(), StageError> {
+/// Refuses a kind of seam that a stepping solver does not carry out. All join the pairs of seams,
+/// some take elastic `bands`.
+pub(crate) fn carries_out(kind: SeamKind, name: &str, bands: bool) -> Result<(), StageError> {
     match kind {
+        SeamKind::Elastic { .. } if bands => Ok(()),
         SeamKind::Matched | SeamKind::Gathered | SeamKind::Dart | SeamKind::Pleat(_) | SeamKind::Patch => {
             Ok(())
         }
@@ -26,7 +28,7 @@ mod tests {
     #[test]
     fn kinds_that_are_more_than_joined_pairs_are_refused_by_name() {
         for kind in [SeamKind::Elastic { ratio: 0.8, stiffness: 30.0 }, SeamKind::Folded { angle: 1.0 }] {
-            let e = only_joins(kind, "a.b + c.d").err().map(|e| (e.message, e.hint));
+            let e = carries_out(kind, "a.b + c.d", false).err().map(|e| (e.message, e.hint));
             let message = format!(
                 "the seam a.b + c.d is of the kind \"{}\", which this solver does not carry out",
                 kind.word()
@@ -34,6 +36,8 @@ mod tests {
             let hint = Some("sew and drape with `StaticEquilibrium()`, or make it a matched seam".to_owned());
             assert_eq!(e, Some((message, hint)));
         }
+        let elastic = SeamKind::Elastic { ratio: 0.8, stiffness: 30.0 };
+        assert!(carries_out(elastic, "a.b + c.d", true).is_ok(), "a band is an energy");
         let joined = [
             SeamKind::Matched,
             SeamKind::Gathered,
@@ -43,7 +47,7 @@ mod tests {
             SeamKind::Patch,
         ];
         for kind in joined {
-            assert!(only_joins(kind, "a.b + c.d").is_ok());
+            assert!(carries_out(kind, "a.b + c.d", false).is_ok());
         }
     }
 }

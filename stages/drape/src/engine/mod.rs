@@ -17,7 +17,7 @@ mod words;
 
 pub use arithmetic::arithmetic;
 pub use fault::{cloth_error, scene_error, split};
-pub(crate) use kinds::only_joins;
+pub(crate) use kinds::carries_out;
 pub use lost::lost;
 pub use on_body::{both, on_body};
 pub use response::check_response;

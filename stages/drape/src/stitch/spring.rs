@@ -6,10 +6,12 @@
 //! Limits: stiff fabrics are softened to `stiffest`; a seam that does not come nearer is reported;
 //! nothing is torn or pulled through the body.
 
-use crate::drape::{Course, InTime, damping, moved, softened, springs};
+use crate::drape::{Course, InTime, SewThrough, by_place, damping, moved, softened, springs};
 use crate::engine::Motions;
-use toile_cloth::motion::{Method, Motion, Until};
+use toile_cloth::motion::{self, Method, Motion, Until};
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
+use toile_core::{ByPlace, Known, Node};
 
 /// Sews the panels of a garment together, cloth taken as springs.
 ///
@@ -19,7 +21,7 @@ use toile_core::prelude::*;
 /// sewn the same way. A seam that cannot close is an error that names it.
 #[stage(
     role = Stitcher,
-    version = 3,
+    version = 4,
     source = "Fan, Zhou, Wang, Yuen, 1999; improved spring-mass model, 2003",
     example = "SpringStitcher(seam_distance: \"1 mm\")",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -28,6 +30,11 @@ pub struct SpringStitcher {
     /// Seams are joined when the points of each pair are nearer than this.
     #[param(default = Length::mm(1.0), min = 1e-5, max = 0.02, trades)]
     pub seam_distance: Length,
+    /// What brings the two sides of a seam together: the set speed `closing`, as hands would, or
+    /// the published force of each pair of points, in proportion to its gap, N/m; the larger it is
+    /// the sooner seams close and the more the cloth stretches. Points that have met stay together.
+    #[param(default = SeamForce::Speed, min = 1e-6, max = 1e6, unit = "N/m")]
+    pub seam_force: SeamForce,
     /// Speed at which the two sides of a seam are brought together.
     #[param(default = 0.5, min = 0.001, max = 100.0, unit = "m/s")]
     pub closing: f64,
@@ -44,9 +51,26 @@ pub struct SpringStitcher {
     /// Time between two looks at contacts.
     #[param(default = 0.004, min = 1e-6, max = 0.1, unit = "s", trades, finer = "less")]
     pub dt: f64,
+    /// Shortest step: vertices that are too light for it get more inertia, which changes how the
+    /// cloth moves and not where it comes to rest.
+    #[param(default = 4e-4, min = 1e-7, max = 0.01, unit = "s", trades, finer = "less")]
+    pub least_step: f64,
     /// Longest simulated time for sewing.
     #[param(default = 4.0, min = 0.01, max = 100.0, unit = "s", trades)]
     pub time_limit: f64,
+    /// How seams close.
+    #[param(flatten)]
+    pub sewn: SewThrough,
+}
+
+/// What brings the two sides of a seam together.
+#[choice]
+#[derive(Copy)]
+pub enum SeamForce {
+    /// The set speed.
+    Speed,
+    /// A force in proportion to the gap, N/m.
+    Linear(f64),
 }
 
 #[stage]
@@ -65,13 +89,18 @@ impl SpringStitcher {
             drag: self.damping + damping(garment),
             longest: self.time_limit,
             join_gap: self.seam_distance,
+            sewn: self.sewn,
             ..InTime::default()
         };
         let motion = Motion {
+            seam_force: match self.seam_force {
+                SeamForce::Speed => motion::SeamForce::Speed,
+                SeamForce::Linear(stiffness) => motion::SeamForce::Linear(stiffness),
+            },
             closing: self.closing,
             sewing_friction: self.friction,
             until: Until::Sewn { longest: self.time_limit },
-            ..time.motion(Method::CentralDifferences, springs())
+            ..time.motion(Method::CentralDifferences { least: self.least_step }, springs())
         };
         let can = Motions {
             longest: ("time_limit", self.time_limit),
@@ -81,5 +110,13 @@ impl SpringStitcher {
         };
         let course = Course { time: &time, motion, can };
         moved(&course, &softened(garment, self.stiffest), garment, collider, None, cx)
+    }
+
+    fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
+        by_place::in_time(nodes, index)
+    }
+
+    fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
+        by_place::in_time_rule(known)
     }
 }

@@ -74,6 +74,10 @@ impl Element<2> for SkipOne {
 
     fn state(&self, e: usize, x: &[Vec3; 2], form: Projection) -> Blocks<2> {
         let s = &self.spans[e];
+        if form == Projection::Bound {
+            let h = Matrix3::identity() * s.stiffness;
+            return [[h, -h], [-h, h]];
+        }
         let d = x[1] - x[0];
         let length = d.norm().max(f64::MIN_POSITIVE);
         let unit = d / length;

@@ -115,6 +115,11 @@ impl Element<2> for Springs {
         let s = &self.springs[e];
         let (length, unit) = direction(x);
         let (curve, strain) = (self.curve(s), length / s.rest - 1.0);
+        if form == Projection::Bound {
+            // Force over length is below the steepest slope, too.
+            let h = Matrix3::identity() * (curve.steepest() * s.width / s.rest);
+            return [[h, -h], [-h, h]];
+        }
         let mut across = if length > 0.0 { curve.force(strain) * s.width / length } else { 0.0 };
         if across < 0.0 {
             across *= form.compression();

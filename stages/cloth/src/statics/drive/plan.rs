@@ -12,7 +12,7 @@ use crate::statics::forces::body_contact::BodyContact;
 use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::levels::assemble::{Collider, assemble, cloths, gravity, kept_seam_forces};
 use crate::statics::levels::bending_continuation::{BendingContinuation, EDGES, EDGES_THROUGH};
-use crate::statics::levels::coarsen::{Coarser, coarsen};
+use crate::statics::levels::coarsen::{Coarser, levels};
 use crate::statics::levels::mesh_level::Level;
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::newton::sequential_start::stack_size;
@@ -172,14 +172,4 @@ impl<'a> Plan<'a> {
         let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
         self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()])
     }
-}
-
-/// The pieces of a scene and coarser ones, fine to coarse, and how each of those was made.
-fn levels(scene: &Scene, coarsest: usize) -> (Vec<Pieces>, Vec<Coarser>) {
-    let (mut pieces, mut coarser) = (vec![Pieces::new(scene)], Vec::new());
-    while let Some(next) = pieces.last().filter(|p| p.points > coarsest).and_then(coarsen) {
-        pieces.push(next.pieces.clone());
-        coarser.push(next);
-    }
-    (pieces, coarser)
 }

@@ -9,6 +9,7 @@
 
 use self::keep::independent;
 use self::locate::CoarseLocator;
+use crate::scene::Scene;
 use crate::statics::levels::pieces::Pieces;
 use nalgebra::{Vector2, Vector3};
 
@@ -33,6 +34,17 @@ impl Coarser {
         let at = |(v, w): &([u32; 3], [f64; 3])| (0..3).map(|k| coarse[v[k] as usize] * w[k]).sum();
         self.weights.iter().map(at).collect()
     }
+}
+
+/// The pieces of a scene and coarser ones down to about so many points, fine to coarse, and how
+/// each of those was made.
+pub(crate) fn levels(scene: &Scene, coarsest: usize) -> (Vec<Pieces>, Vec<Coarser>) {
+    let (mut pieces, mut coarser) = (vec![Pieces::new(scene)], Vec::new());
+    while let Some(next) = pieces.last().filter(|p| p.points > coarsest).and_then(coarsen) {
+        pieces.push(next.pieces.clone());
+        coarser.push(next);
+    }
+    (pieces, coarser)
 }
 
 /// The next coarser level, or `None` where little can be removed.

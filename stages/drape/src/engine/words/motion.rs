@@ -43,7 +43,7 @@ impl MessageContext<'_> {
                 ),
                 "take another draper, such as `StaticEquilibrium()`, or one fabric for all pieces".to_owned(),
             ),
-            MotionError::SeamNotClosed { seam: of, gap, time, reversed } => {
+            MotionError::SeamNotClosed { seam: of, gap, time, reversed, .. } => {
                 let help = match (reversed.contains(of), *time < longest.1) {
                     (true, _) => turn_round(of),
                     (false, false) => {
@@ -69,7 +69,7 @@ impl MessageContext<'_> {
                 );
                 (ErrorCode::StaticEquilibrium, message, help)
             }
-            MotionError::Timeout { seconds, time, gap } => {
+            MotionError::Timeout { seconds, time, gap, .. } => {
                 let more = time_limit.map_or_else(
                     || "take a larger edge length of the mesh".to_owned(),
                     |limit| format!("allow more time: {}", self.set("time_limit", (2.0 * limit).ceil())),

@@ -224,6 +224,7 @@ fn statics() -> Vec<(StaticsError, &'static str)> {
 
 fn motions() -> Vec<(MotionError, &'static str)> {
     let open = |time, reversed: &[&str]| MotionError::SeamNotClosed {
+        positions: vec![],
         seam: "side".into(),
         gap: 0.239,
         time,
@@ -252,7 +253,7 @@ fn motions() -> Vec<(MotionError, &'static str)> {
              sew with softer cloth: `--set 'stages.Drape.stiffest=125'`, or with a larger edge length of the mesh",
         ),
         (
-            MotionError::Timeout { seconds: 600.0, time: 1.25, gap: 0.0 },
+            MotionError::Timeout { seconds: 600.0, time: 1.25, gap: 0.0, positions: vec![] },
             "out of time after 600.0 s: 1.250 s of the motion are done\ntake a larger edge length of the mesh",
         ),
         (
