@@ -49,6 +49,20 @@ pub struct Nearest {
     pub point: Vec3,
 }
 
+impl Nearest {
+    /// What is known of `p` from the closest point and the unit pseudo-normal of the feature that it
+    /// lies on, which is the inside of a triangle or not.
+    #[must_use]
+    pub fn signed(p: &Vec3, point: Vec3, pseudo: Vec3, in_face: bool) -> Self {
+        let gap = p - point;
+        let outside = gap.dot(&pseudo) >= 0.0;
+        let distance = if outside { gap.norm() } else { -gap.norm() };
+        let straight = in_face || distance.abs() <= ON_SURFACE;
+        let normal = if straight { pseudo } else { gap / distance };
+        Nearest { point, normal, distance }
+    }
+}
+
 /// Where a path first enters the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathEntry {
@@ -110,12 +124,7 @@ impl<V: BoundingVolume> SignedDistance<V> {
             Feature::Side(k) => normals.sides[k as usize],
             Feature::Corner(k) => normals.corners[k as usize],
         };
-        let gap = p - on.point;
-        let outside = gap.dot(&pseudo) >= 0.0;
-        let distance = if outside { gap.norm() } else { -gap.norm() };
-        let straight = on.feature == Feature::Face || distance.abs() <= ON_SURFACE;
-        let normal = if straight { pseudo } else { gap / distance };
-        Nearest { point: on.point, normal, distance }
+        Nearest::signed(p, on.point, pseudo, on.feature == Feature::Face)
     }
 
     /// Where the path from `p` to `q` first enters; nothing for a path that only leaves, or is no
@@ -138,9 +147,10 @@ impl<V: BoundingVolume> SignedDistance<V> {
     }
 }
 
-/// The share at which the path from `p` to `q` passes the triangle from its outer side, its rim
-/// counted in.
-fn entry_share(p: &Vec3, q: &Vec3, t: &Corners, normal: &Vec3) -> Option<f64> {
+/// The share at which the path from `p` to `q` passes the triangle with this unit normal from its
+/// outer side, its rim counted in; by exact signs of volumes.
+#[must_use]
+pub fn entry_share(p: &Vec3, q: &Vec3, t: &Corners, normal: &Vec3) -> Option<f64> {
     let [a, b, c] = t;
     // `volume` is positive on the inner side.
     let (vp, vq) = (volume(a, b, c, p), volume(a, b, c, q));

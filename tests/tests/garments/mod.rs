@@ -7,5 +7,6 @@ mod falls;
 mod flat;
 mod outputs;
 mod photos;
+mod swapped;
 mod turntable;
 mod vest;

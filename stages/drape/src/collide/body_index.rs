@@ -1,35 +1,34 @@
 //! The body's skin as a collider answers for it: contacts of many vertices, and paths that enter.
 //!
-//! Distances and paths are those of [`SignedDistance`]; most vertices never reach its tree: a
+//! Distances and paths are those of a [`Skin`]; most vertices never reach its tree: a
 //! lattice of distances sorts them out. O(log n) a query. The mesh must have passed
 //! [`check_body`](super::check_body).
 
 use super::asked_distances::Distances;
 use super::points::{self, coords};
+use super::search::Skin;
 use rayon::prelude::*;
 use toile_core::artifact::{Body, BodyContact, Point3, Surface};
 use toile_core::{Context, StageError};
 use toile_geometry::Vec3;
 use toile_geometry::lattice::DistanceLattice;
-use toile_geometry::signed_distance::SignedDistance;
-use toile_geometry::volume::BoundingVolume;
 
 /// Vertices that one parallel task takes at least.
 const CHUNK: usize = 128;
 
 /// The skin of a body.
 #[derive(Debug)]
-pub struct BodyIndex<V> {
-    skin: SignedDistance<V>,
+pub struct BodyIndex<S> {
+    skin: S,
     lattice: DistanceLattice,
 }
 
-impl<V: BoundingVolume> BodyIndex<V> {
+impl<S: Skin> BodyIndex<S> {
     /// The index of a body that has passed its checks.
     pub fn new(body: &Body, distances: Distances, cx: &Context) -> Result<Self, StageError> {
         let vertices = coords(&body.positions);
         let lattice = DistanceLattice::around(vertices);
-        let skin = SignedDistance::new(vertices.to_vec(), body.triangles.clone());
+        let skin = S::over(vertices.to_vec(), body.triangles.clone());
         cx.check()?;
         let index = BodyIndex { skin, lattice };
         if distances == Distances::Ahead {

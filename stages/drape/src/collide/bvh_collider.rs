@@ -1,15 +1,14 @@
 //! `BvhCollider`: body and cloth in hierarchies of bounding volumes.
 
-use super::asked_distances::{self, Distances};
-use super::body_check::check_body;
-use super::scheme::BvhScheme;
+use super::contact_settings::{self, ContactSettings};
 use std::sync::Arc;
-use toile_body::bridged;
 use toile_core::Known;
 use toile_core::decide::Decision;
 use toile_core::param::ron_text;
 use toile_core::prelude::*;
 use toile_core::{ByPlace, Node};
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::signed_distance::SignedDistance;
 use toile_geometry::volume::{Aabb, BoundingSphere, BoundingVolume, KDop, Obb};
 
 /// The bounding volume of the hierarchies.
@@ -37,7 +36,7 @@ pub enum Volume {
 /// that stiffness instead. Both are what `SpringStitcher` and `SpringDraper` do; the other drapers
 /// refuse them.
 ///
-/// Behind another `BvhCollider`, such as one of the same body in another pose, it takes that one's
+/// `ParryCollider` gives the same contacts by another library. Behind another `BvhCollider`, such as one of the same body in another pose, it takes that one's
 /// parameters where it is given none.
 #[stage(
     role = Collider,
@@ -49,51 +48,20 @@ pub struct BvhCollider {
     /// What the hierarchies are made of.
     #[param(default = Volume::Aabb, trades)]
     volume: Volume,
-    /// Distance at which cloth is held off the body and off itself.
-    #[param(default = Length::mm(1.5), min = 1e-5, max = 0.05, trades)]
-    thickness: Length,
-    /// Coulomb friction coefficient.
-    #[param(default = 0.3, min = 0, max = 2)]
-    friction: f64,
-    /// Share of the speed that is thrown back, 0 for cloth that stays where it lands: for springs
-    /// alone.
-    #[param(default = 0.0, min = 0, max = 1)]
-    restitution: f64,
-    /// True where cloth is kept out of itself.
-    #[param(default = true, trades)]
-    self_collision: bool,
-    /// Stiffness of the penalty response, for springs alone; without it contacts are resolved by
-    /// impulses.
-    #[param(default = None, min = 0, max = 1e6, unit = "N/m")]
-    penalty: Option<f64>,
-    /// Gaps between arm and trunk narrower than this are bridged for the cloth, which cannot rest
-    /// in them; none at 0.
-    #[param(default = Length::mm(0.0), min = 0.0, max = 0.3)]
-    bridge: Length,
-    /// When distances to the body are worked out; the results are the same.
-    #[param(default = Distances::Asked)]
-    distances: Distances,
+    #[param(flatten)]
+    contact: ContactSettings,
 }
-
-/// Share of the stage's time that distances where they are requested save, on the vest.
-const SHARE: f64 = 0.7;
 
 #[stage]
 impl BvhCollider {
     fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
-        let own = nodes.get(index).map(|n| n.card.name);
-        let like = nodes.iter().take(index).rposition(|n| Some(n.card.name) == own);
-        ByPlace { like, set: Vec::new() }
+        contact_settings::like_the_one_before(nodes, index)
     }
 
-    fn run(&self, body: Option<&Body>, cx: &Context) -> Result<Collider, StageError> {
-        body.map(check_body).transpose()?;
-        if body.is_none() && !self.self_collision {
-            cx.warn("there is no body and self-collision is off: nothing is kept apart");
-        }
-        let bridged = self.bridged(body, cx)?;
-        let signature = self.signature(body);
-        let body = bridged.as_ref().or(body);
+    pub(super) fn run(&self, body: Option<&Body>, cx: &Context) -> Result<Collider, StageError> {
+        let prepared = self.contact.prepared(body, cx)?;
+        let signature = contact_settings::signature("BvhCollider", &ron_text(self), body);
+        let body = prepared.as_ref().or(body);
         let scheme = match self.volume {
             Volume::Aabb => self.scheme::<Aabb>(body, cx),
             Volume::Sphere => self.scheme::<BoundingSphere>(body, cx),
@@ -115,24 +83,7 @@ impl BvhCollider {
     }
 
     fn decisions(&self, known: &Known<'_>) -> Vec<Decision> {
-        let body = known.is_wired("body");
-        body.then(|| asked_distances::rule(self.distances, known.given, SHARE))
-            .flatten()
-            .into_iter()
-            .collect()
-    }
-
-    /// The body as the cloth meets it, where that is another one.
-    fn bridged(&self, body: Option<&Body>, cx: &Context) -> Result<Option<Body>, StageError> {
-        let width = self.bridge.metres();
-        if width == 0.0 {
-            return Ok(None);
-        }
-        let found = body.map(|b| bridged(b, width, cx)).transpose()?.flatten();
-        if found.is_none() {
-            cx.note("`bridge` has nothing to bridge: there is no body with landmarks of its armpits");
-        }
-        Ok(found)
+        self.contact.decisions(known)
     }
 
     fn scheme<V: BoundingVolume>(
@@ -140,24 +91,7 @@ impl BvhCollider {
         body: Option<&Body>,
         cx: &Context,
     ) -> Result<Arc<dyn Collide>, StageError> {
-        let card = ColliderCard {
-            thickness: self.thickness.metres(),
-            friction: self.friction,
-            restitution: self.restitution,
-            self_collision: self.self_collision,
-            penalty: self.penalty,
-        };
-        Ok(Arc::new(BvhScheme::<V>::new(card, body, self.distances, cx)?))
-    }
-
-    /// Names scheme, settings and body, so that colliders with different answers differ in it.
-    fn signature(&self, body: Option<&Body>) -> String {
-        let digest = |b: &Body| {
-            let mut d = toile_core::artifact::Digester::new();
-            b.digest(&mut d);
-            d.finish().short()
-        };
-        format!("BvhCollider{} body {}", ron_text(self), body.map_or_else(|| "none".into(), digest))
+        self.contact.scheme::<SignedDistance<V>, ClothTree<V>>(body, cx)
     }
 }
 

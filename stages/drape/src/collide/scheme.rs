@@ -1,39 +1,43 @@
-//! The collision service: a body's skin, the cloth's hierarchy, and the settings.
+//! The collision service: a body's skin, the search of cloth near itself, and the settings.
 
 use super::asked_distances::Distances;
 use super::body_index::BodyIndex;
 use super::points::coords;
-use super::self_collision::{SearchedCloth, tree, usable};
+use super::search::{ClothSearch, Skin};
+use super::self_collision::{SearchedCloth, search, usable};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use toile_core::artifact::{Body, BodyContact, Collide, ColliderCard, Point3, SelfContact, Surface};
 use toile_core::{Context, StageError};
 use toile_geometry::cloth_tree::ClothTree;
-use toile_geometry::volume::BoundingVolume;
+use toile_geometry::signed_distance::SignedDistance;
 
-/// Trees kept for the next query: one per garment is enough, a few let garments run side by side.
+/// Searches kept for the next query: one per garment is enough, a few let garments run side by side.
 const POOL: usize = 4;
 
 /// Collisions by hierarchies of one kind of volume.
+pub type BvhScheme<V> = Scheme<SignedDistance<V>, ClothTree<V>>;
+
+/// Collisions by one kind of skin and one kind of search.
 #[derive(Debug)]
-pub struct BvhScheme<V> {
+pub struct Scheme<S, C> {
     card: ColliderCard,
-    body: Option<BodyIndex<V>>,
+    body: Option<BodyIndex<S>>,
     landmarks: BTreeMap<String, Point3>,
-    // A query takes a tree out and puts it back, and works on it outside the lock.
-    pool: Mutex<Vec<KeptTree<V>>>,
+    // A query takes a search out and puts it back, and works on it outside the lock.
+    pool: Mutex<Vec<KeptSearch<C>>>,
 }
 
-/// A tree with the cloth that it was made for.
+/// A search with the cloth that it was made for.
 #[derive(Debug)]
-struct KeptTree<V> {
+struct KeptSearch<C> {
     vertices: usize,
     triangles: Vec<[u32; 3]>,
     usable: Vec<(u32, [u32; 3])>,
-    tree: ClothTree<V>,
+    search: C,
 }
 
-impl<V: BoundingVolume> BvhScheme<V> {
+impl<S: Skin, C: ClothSearch> Scheme<S, C> {
     /// The scheme for a body that has passed its checks, or for cloth alone.
     pub fn new(
         card: ColliderCard,
@@ -43,24 +47,25 @@ impl<V: BoundingVolume> BvhScheme<V> {
     ) -> Result<Self, StageError> {
         let landmarks = body.map(|b| b.landmarks.clone()).unwrap_or_default();
         let body = body.map(|b| BodyIndex::new(b, distances, cx)).transpose()?;
-        Ok(BvhScheme { card, body, landmarks, pool: Mutex::default() })
+        Ok(Scheme { card, body, landmarks, pool: Mutex::default() })
     }
 
-    /// What `f` makes of the cloth, with a tree that was kept for the same triangles or is made for
+    /// What `f` makes of the cloth, with a search that was kept for the same triangles or is made for
     /// it.
     fn with_cloth<T>(
         &self,
         positions: &[Point3],
         triangles: &[[u32; 3]],
-        f: impl FnOnce(&SearchedCloth<'_, V>) -> T,
+        f: impl FnOnce(&SearchedCloth<'_, C>) -> T,
     ) -> T {
         let x = coords(positions);
         let kept = self.lock().pop().filter(|k| k.vertices == x.len() && k.triangles == triangles);
         let kept = kept.unwrap_or_else(|| {
             let usable = usable(triangles, x.len());
-            KeptTree { vertices: x.len(), triangles: triangles.to_vec(), tree: tree(x, &usable), usable }
+            let search = search(x, &usable);
+            KeptSearch { vertices: x.len(), triangles: triangles.to_vec(), usable, search }
         });
-        let result = f(&SearchedCloth { x, usable: &kept.usable, tree: &kept.tree });
+        let result = f(&SearchedCloth { x, usable: &kept.usable, search: &kept.search });
         let mut pool = self.lock();
         if pool.len() < POOL {
             pool.push(kept);
@@ -68,12 +73,12 @@ impl<V: BoundingVolume> BvhScheme<V> {
         result
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<KeptTree<V>>> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<KeptSearch<C>>> {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl<V: BoundingVolume> Collide for BvhScheme<V> {
+impl<S: Skin, C: ClothSearch> Collide for Scheme<S, C> {
     fn card(&self) -> ColliderCard {
         self.card
     }

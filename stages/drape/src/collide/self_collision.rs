@@ -1,28 +1,27 @@
 //! Cloth against itself: contacts, and how far vertices may move.
 //!
-//! Pairs come from the cloth's tree ([`ClothTree`]), about six per triangle for its neighbours
-//! alone; cost O(n + pairs).
+//! Pairs come from a [`ClothSearch`], about six per triangle for its neighbours alone; cost O(n +
+//! pairs).
 //!
 //! The bounds are those of offset geometric contact (Chen, Hsu, Yuksel et al. 2025) and, before
 //! it, of Wu et al. 2020: two pieces at distance d cannot meet while all their vertices move by
 //! less than d/2.
 
 use super::proximity::{Proximity, edge_edge, vertex_triangle};
+use super::search::ClothSearch;
 use toile_core::artifact::SelfContact;
 use toile_geometry::Vec3;
-use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::{Kind, Pair};
-use toile_geometry::volume::BoundingVolume;
 
 /// A cloth as it is asked about: places, which may be no finite numbers, and triangles, which may
 /// name vertices that there are not.
-pub(super) struct SearchedCloth<'a, V> {
+pub(super) struct SearchedCloth<'a, C> {
     /// Places, m.
     pub(super) x: &'a [Vec3],
     /// Those of its triangles that can be used, with their numbers.
     pub(super) usable: &'a [(u32, [u32; 3])],
-    /// The tree over these.
-    pub(super) tree: &'a ClothTree<V>,
+    /// The search over these.
+    pub(super) search: &'a C,
 }
 
 /// Pairs that share no node, nearer than `reach`, with their closest points.
@@ -47,10 +46,10 @@ pub(super) fn usable(triangles: &[[u32; 3]], nodes: usize) -> Vec<(u32, [u32; 3]
     (0..).zip(triangles.iter().copied()).filter(|(_, t)| is_usable(t)).collect()
 }
 
-/// The tree over usable triangles.
-pub(super) fn tree<V: BoundingVolume>(x: &[Vec3], usable: &[(u32, [u32; 3])]) -> ClothTree<V> {
+/// The search over usable triangles.
+pub(super) fn search<C: ClothSearch>(x: &[Vec3], usable: &[(u32, [u32; 3])]) -> C {
     let triangles: Vec<[u32; 3]> = usable.iter().map(|u| u.1).collect();
-    ClothTree::of(&triangles, &finite(x))
+    C::over(&finite(x), &triangles)
 }
 
 /// The places, the origin for one that is no finite number, so that volumes stay finite.
@@ -62,7 +61,7 @@ fn is_finite(p: &Vec3) -> bool {
     p.iter().all(|c| c.is_finite())
 }
 
-impl<V: BoundingVolume> SearchedCloth<'_, V> {
+impl<C: ClothSearch> SearchedCloth<'_, C> {
     /// Vertex-triangle and edge-edge contacts nearer than `reach`, each pair of closest features
     /// once.
     pub(super) fn contacts(&self, reach: f64, out: &mut Vec<SelfContact>) {
@@ -99,7 +98,7 @@ impl<V: BoundingVolume> SearchedCloth<'_, V> {
 
     /// Pairs of triangles that cross, lower number first, ascending.
     pub(super) fn crossings(&self) -> Vec<[u32; 2]> {
-        let found = self.tree.exact_crossings(&finite(self.x));
+        let found = self.search.crossings(&finite(self.x));
         let known = |k: &u32| self.usable[*k as usize].1.iter().all(|&v| is_finite(&self.x[v as usize]));
         found
             .into_iter()
@@ -109,8 +108,8 @@ impl<V: BoundingVolume> SearchedCloth<'_, V> {
     }
 
     fn near(&self, reach: f64) -> Vec<NearPair> {
-        let (x, still) = (finite(self.x), vec![Vec3::zeros(); self.x.len()]);
-        let pairs = self.tree.pairs(&x, &still, reach);
+        let x = finite(self.x);
+        let pairs = self.search.pairs(&x, reach);
         pairs
             .iter()
             .filter(|p| p.nodes.iter().all(|&i| is_finite(&self.x[i as usize])))

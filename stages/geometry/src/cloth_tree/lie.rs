@@ -12,8 +12,8 @@ impl<V: BoundingVolume> ClothTree<V> {
     #[must_use]
     pub fn lying(&self, x: &[Vec3], reach: f64) -> Vec<([u32; 3], [u32; 3])> {
         let lies = |s: usize, t: usize, out: &mut Vec<_>| {
-            let (s, t) = (self.triangles[s], self.triangles[t]);
-            if s.iter().any(|&v| self.is_one_of(v, &t)) {
+            let (s, t) = (self.features.triangles[s], self.features.triangles[t]);
+            if s.iter().any(|&v| self.features.is_one_of(v, &t)) {
                 return;
             }
             for (own, other) in [(s, t), (t, s)] {

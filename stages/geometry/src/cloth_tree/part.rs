@@ -1,7 +1,8 @@
 //! A part of the tree, and a tree of which only a part looks for others: for cloth that moves among
 //! cloth that holds still.
 
-use super::{Active, ClothTree, PairSearch};
+use super::features::PairSearch;
+use super::{Active, ClothTree};
 use crate::Vec3;
 use crate::pair::Pair;
 use crate::volume::BoundingVolume;
@@ -17,7 +18,7 @@ impl<V: BoundingVolume> ClothTree<V> {
     /// Which parts and triangles have one of these nodes.
     fn active(&self, nodes: &[bool]) -> Active {
         let has = |t: &[u32; 3]| t.iter().any(|&v| nodes[v as usize]);
-        let triangles: Vec<bool> = self.triangles.iter().map(has).collect();
+        let triangles: Vec<bool> = self.features.triangles.iter().map(has).collect();
         let parts = self.tree.sweep(|r| triangles[r].contains(&true), |a, b| *a || *b);
         Active { parts, triangles }
     }
@@ -41,9 +42,9 @@ impl<V: BoundingVolume> ClothTree<V> {
     pub fn part(&self, nodes: &[u32], index: &[u32], layout: &[Vec3]) -> Self {
         let own = |t: &[u32; 3]| t.map(|v| index[v as usize]);
         let is_known = |t: &[u32; 3]| t.iter().all(|&k| (k as usize) < nodes.len());
-        let all: Vec<[u32; 3]> = self.triangles.iter().map(own).filter(is_known).collect();
+        let all: Vec<[u32; 3]> = self.features.triangles.iter().map(own).filter(is_known).collect();
         let part = Self::of(&all, layout);
-        part.sewing(nodes.iter().map(|&i| self.point[i as usize]).collect())
+        part.sewing(nodes.iter().map(|&i| self.features.point[i as usize]).collect())
     }
 
     /// Which nodes belong to triangles that may come nearer than `reach` to one that looks for
@@ -53,7 +54,7 @@ impl<V: BoundingVolume> ClothTree<V> {
         let still = vec![Vec3::zeros(); x.len()];
         let search = PairSearch { x, moves: &still, ways: &[], reach };
         let near = |s: usize, t: usize, out: &mut Vec<u32>| {
-            let (a, b) = (&self.triangles[s], &self.triangles[t]);
+            let (a, b) = (&self.features.triangles[s], &self.features.triangles[t]);
             if !search.is_far(a, b) {
                 out.extend(a.iter().chain(b));
             }

@@ -4,7 +4,7 @@
 //! meets those of many layers. Along the normal of either triangle they are flat (two of the axes
 //! of the separating axis theorem).
 
-use super::PairSearch;
+use super::features::PairSearch;
 
 use crate::Vec3;
 impl PairSearch<'_> {

@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
 
+use super::features::Owned;
 use super::*;
 use crate::shapes::{sheet, soup};
 use crate::volume::{BoundingSphere, KDop, Obb};
@@ -9,7 +10,7 @@ use proptest::prelude::*;
 fn every_vertex_and_edge_has_one_owner() {
     let (x, triangles) = sheet(5, |_, _| 0.0);
     let tree = ClothTree::new(&triangles, &x);
-    let count = |of: fn(&Owned) -> &[bool; 3]| tree.owns.iter().flat_map(of).filter(|o| **o).count();
+    let count = |of: fn(&Owned) -> &[bool; 3]| tree.features.owns.iter().flat_map(of).filter(|o| **o).count();
     assert_eq!(count(|o| &o.0), x.len());
     // Euler: vertices - edges + faces = 1 for a disc.
     assert_eq!(count(|o| &o.1), x.len() + triangles.len() - 1);

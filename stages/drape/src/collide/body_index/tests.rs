@@ -3,19 +3,22 @@
 use super::super::testing::{cube, numbers, sphere};
 use super::*;
 use toile_core::artifact::Vector3;
-use toile_geometry::volume::{Aabb, BoundingSphere, KDop, Obb};
+use toile_geometry::signed_distance::SignedDistance;
+use toile_geometry::volume::{Aabb, BoundingSphere, BoundingVolume, KDop, Obb};
 
-fn index<V: BoundingVolume>(body: &Body) -> BodyIndex<V> {
+type OwnIndex<V> = BodyIndex<SignedDistance<V>>;
+
+fn index<V: BoundingVolume>(body: &Body) -> OwnIndex<V> {
     BodyIndex::new(body, Distances::Asked, &Context::quiet()).unwrap()
 }
 
-fn contacts<V: BoundingVolume>(index: &BodyIndex<V>, at: &[Point3], reach: f64) -> Vec<BodyContact> {
+fn contacts<V: BoundingVolume>(index: &OwnIndex<V>, at: &[Point3], reach: f64) -> Vec<BodyContact> {
     let mut out = Vec::new();
     index.contacts(at, reach, &mut out);
     out
 }
 
-fn hits<V: BoundingVolume>(index: &BodyIndex<V>, from: &[Point3], to: &[Point3]) -> Vec<BodyContact> {
+fn hits<V: BoundingVolume>(index: &OwnIndex<V>, from: &[Point3], to: &[Point3]) -> Vec<BodyContact> {
     let mut out = Vec::new();
     index.hits(from, to, &mut out);
     out

@@ -7,6 +7,10 @@ fn made(collider: &BvhCollider, body: Option<&Body>) -> Arc<dyn Collide> {
     collider.run(body, &Context::quiet()).unwrap().scheme
 }
 
+fn with(contact: ContactSettings) -> BvhCollider {
+    BvhCollider { contact, ..Default::default() }
+}
+
 const VOLUMES: [Volume; 7] = [
     Volume::Aabb,
     Volume::Sphere,
@@ -78,7 +82,7 @@ fn refuses_an_open_body() {
 #[test]
 fn warns_where_nothing_is_left_to_collide() {
     let cx = Context::quiet();
-    BvhCollider { self_collision: false, ..Default::default() }.run(None, &cx).unwrap();
+    with(ContactSettings { self_collision: false, ..Default::default() }).run(None, &cx).unwrap();
     assert_eq!(
         cx.take_remarks().warnings,
         ["there is no body and self-collision is off: nothing is kept apart"]
@@ -87,7 +91,7 @@ fn warns_where_nothing_is_left_to_collide() {
 
 #[test]
 fn a_bridge_needs_armpits_and_keeps_cloth_out_of_the_gap() {
-    let wide = BvhCollider { bridge: Length::mm(80.0), ..Default::default() };
+    let wide = with(ContactSettings { bridge: Length::mm(80.0), ..Default::default() });
     let cx = Context::quiet();
     wide.run(Some(&cube(0.5)), &cx).unwrap();
     assert_eq!(
@@ -116,7 +120,7 @@ fn a_bridge_needs_armpits_and_keeps_cloth_out_of_the_gap() {
 fn its_signature_tells_bodies_and_settings_apart() {
     let sign = |c: &BvhCollider, b: Option<&Body>| c.run(b, &Context::quiet()).unwrap().signature;
     let plain = BvhCollider::default();
-    let rough = BvhCollider { friction: 0.5, ..Default::default() };
+    let rough = with(ContactSettings { friction: 0.5, ..Default::default() });
     let signs = [
         sign(&plain, None),
         sign(&plain, Some(&cube(0.5))),
@@ -129,8 +133,8 @@ fn its_signature_tells_bodies_and_settings_apart() {
 
 #[test]
 fn its_card_shows_the_settings() {
-    let collider = BvhCollider { thickness: Length::mm(2.0), penalty: Some(50.0), ..Default::default() };
-    let card = made(&collider, None).card();
+    let settings = ContactSettings { thickness: Length::mm(2.0), penalty: Some(50.0), ..Default::default() };
+    let card = made(&with(settings), None).card();
     assert_eq!(
         card,
         ColliderCard {

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use std::collections::BTreeSet;
 use toile_core::artifact::Vector3;
 use toile_geometry::closest::Feature;
-use toile_geometry::volume::{Aabb, BoundingSphere, KDop, Obb};
+use toile_geometry::volume::{Aabb, BoundingSphere, BoundingVolume, KDop, Obb};
 
 const CARD: ColliderCard =
     ColliderCard { thickness: 1e-3, friction: 0.3, restitution: 0.0, self_collision: true, penalty: None };
