@@ -13,6 +13,7 @@ mod fall;
 mod method;
 mod moving;
 mod near;
+mod recorder;
 mod seams;
 
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod tests;
 pub use contact::Response;
 pub use error::MotionError;
 pub use method::Method;
+pub use recorder::Recorder;
 
 use crate::energy::{Air, Models};
 use crate::error::ClothError;
@@ -216,6 +218,21 @@ impl Motion {
         stopper: &Stopper,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
+        self.run_recorded(scene, collider, stopper, progress, None)
+    }
+
+    /// The same, where `recorder` takes the frames; [`MotionError::Stopped`] where it is full.
+    ///
+    /// # Errors
+    /// Every [`MotionError`].
+    pub fn run_recorded(
+        &self,
+        scene: &Scene,
+        collider: Option<Collider<'_>>,
+        stopper: &Stopper,
+        progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        recorder: Option<&mut Recorder>,
+    ) -> Result<Moved, MotionError> {
         scene.check()?;
         if self.method.takes_one_fabric() {
             one_fabric(scene)?;
@@ -225,7 +242,8 @@ impl Motion {
         let falls = Falls::of(scene, collider, &pieces);
         let (clock, budget, asked) = (Instant::now(), self.budget, stopper.clone());
         let stopper = Stopper::when(move || asked.is_up() || clock.elapsed() > budget);
-        let mut run = MotionRun { settings: self, scene, collider, pieces, falls, clock, stopper, progress };
+        let mut run =
+            MotionRun { settings: self, scene, collider, pieces, falls, clock, stopper, progress, recorder };
         let open = Moving::open(&run, start)?;
         match self.until {
             Until::Sewn { longest } => {
@@ -247,6 +265,14 @@ fn one_fabric(scene: &Scene) -> Result<(), MotionError> {
     }
 }
 
+/// Values of the moving nodes for every vertex of the scene.
+fn spread(pieces: &Pieces, moving: &Moving, values: &[Vec3]) -> Vec<Vec3> {
+    match moving.is_joined {
+        true => pieces.spread(values),
+        false => values.to_vec(),
+    }
+}
+
 /// A running motion.
 struct MotionRun<'a> {
     settings: &'a Motion,
@@ -258,6 +284,7 @@ struct MotionRun<'a> {
     /// Stops where the caller does, and when the time limit is reached.
     stopper: Stopper,
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    recorder: Option<&'a mut Recorder>,
 }
 
 impl MotionRun<'_> {
@@ -331,6 +358,7 @@ impl MotionRun<'_> {
     }
 
     fn step(&mut self, moving: &mut Moving, end: f64) -> Result<(), MotionError> {
+        let before = self.recorder.is_some().then(|| (moving.progress.time, moving.state.x.clone()));
         let stepped = moving.step(self.settings, self.collider, end);
         if let Err(MotionError::Cloth(ClothError::Stopped)) = stepped {
             return Err(self.stopped(moving));
@@ -339,6 +367,7 @@ impl MotionRun<'_> {
         if let Some(fallen) = self.falls.as_ref().and_then(|f| f.look(self.scene, moving)) {
             return Err(MotionError::FallsPast(Box::new(fallen)));
         }
+        self.record(before, moving)?;
         if (self.progress)(&moving.progress).is_break() {
             return Err(MotionError::Stopped);
         }
@@ -346,6 +375,20 @@ impl MotionRun<'_> {
             return Err(self.stopped(moving));
         }
         Ok(())
+    }
+
+    /// Hands the recorder the step that was made, where a frame is due.
+    fn record(&mut self, before: Option<(f64, Vec<Vec3>)>, moving: &Moving) -> Result<(), MotionError> {
+        let (Some(recorder), Some((time, x))) = (&mut self.recorder, before) else { return Ok(()) };
+        let now = moving.progress.time;
+        if !recorder.is_due(now) {
+            return Ok(());
+        }
+        let (from, to) = (spread(&self.pieces, moving, &x), spread(&self.pieces, moving, &moving.state.x));
+        match recorder.pass((time, &from), (now, &to)) {
+            true => Ok(()),
+            false => Err(MotionError::Stopped),
+        }
     }
 
     /// Why the caller or the time limit ends a motion.
@@ -372,13 +415,9 @@ impl MotionRun<'_> {
         if let Some(collider) = self.collider {
             moving.restore_clearance(collider);
         }
-        let spread = |values: &[Vec3]| match moving.is_joined {
-            true => self.pieces.spread(values),
-            false => values.to_vec(),
-        };
         Moved {
-            positions: spread(&moving.state.x),
-            velocities: spread(&moving.state.v),
+            positions: spread(&self.pieces, &moving, &moving.state.x),
+            velocities: spread(&self.pieces, &moving, &moving.state.v),
             progress: moving.progress,
             converged,
             is_jammed: moving.is_jammed,

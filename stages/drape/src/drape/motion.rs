@@ -1,6 +1,7 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion,
 //! and back.
 
+use super::frames;
 use crate::engine::{
     self, MessageContext, Motions, SceneSetting, SchemeSurface, only_joins, scene_of, weld_seams,
 };
@@ -52,6 +53,9 @@ pub struct InTime {
     /// Wall time after which it gives up. A run that meets it is not repeatable.
     #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
     pub time_limit: f64,
+    /// Time between two frames that are recorded, none at 0; `Frames` behind it asks for its own.
+    #[param(default = 0.0, min = 0.0, max = 100.0, unit = "s")]
+    pub frames: f64,
 }
 
 /// Distance at which cloth is held off itself where there is no collider, m.
@@ -123,15 +127,22 @@ pub(crate) fn moved(
     let motion = Motion { until, response, ..course.motion };
     let cancel = cx.cancel().clone();
     let stopper = Stopper::when(move || cancel.is_cancelled());
-    let moved = motion.run_until_stopped(&scene, engine_collider, &stopper, &mut |p| tell(p, time, cx));
+    let mut recorder = frames::recorder(time.frames, garment, cx)?;
+    let mut told = |p: &Progress| tell(p, time, cx);
+    let moved = motion.run_recorded(&scene, engine_collider, &stopper, &mut told, recorder.as_mut());
     cx.check()?;
+    if recorder.as_ref().is_some_and(|r| r.is_full) {
+        return Err(frames::full(time.frames));
+    }
     let words = MessageContext { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
     let moved = moved.map_err(|e| words.motion(&e, &course.can))?;
     if !moved.converged {
         cx.warn(unrest(&moved, time.speed));
     }
     cx.figure("motion_time", moved.progress.time, "s");
-    Ok(finish(garment, &moved))
+    let mut finished = finish(garment, &moved);
+    finished.motion = frames::after(recorder, garment, &moved);
+    Ok(finished)
 }
 
 /// Why a motion has not come to rest, whose speed is `wanted`, m/s.

@@ -57,6 +57,9 @@ pub struct SpringDraper {
     /// Simulated time after which the drape stops as it is.
     #[param(default = 3.0, min = 0.01, max = 100.0, unit = "s", trades)]
     pub time_limit: f64,
+    /// Time between two frames that are recorded, none at 0; `Frames` behind it asks for its own.
+    #[param(default = 0.0, min = 0.0, max = 100.0, unit = "s")]
+    pub frames: f64,
 }
 
 #[stage]
@@ -75,6 +78,7 @@ impl SpringDraper {
             drag: self.damping + damping(garment),
             speed: self.speed,
             longest: self.time_limit,
+            frames: self.frames,
             ..InTime::default()
         };
         let motion = Motion {

@@ -47,6 +47,9 @@ pub struct SpringStitcher {
     /// Longest simulated time for sewing.
     #[param(default = 4.0, min = 0.01, max = 100.0, unit = "s", trades)]
     pub time_limit: f64,
+    /// Time between two frames that are recorded, none at 0; `Frames` behind it asks for its own.
+    #[param(default = 0.0, min = 0.0, max = 100.0, unit = "s")]
+    pub frames: f64,
 }
 
 #[stage]
@@ -65,6 +68,7 @@ impl SpringStitcher {
             drag: self.damping + damping(garment),
             longest: self.time_limit,
             join_gap: self.seam_distance,
+            frames: self.frames,
             ..InTime::default()
         };
         let motion = Motion {

@@ -2,6 +2,7 @@
 
 mod check;
 mod copyright;
+mod frames;
 mod garment_obj;
 mod glb;
 mod obj;
@@ -20,6 +21,7 @@ mod texture_file;
 mod turntable;
 mod usdz;
 
+pub use frames::Frames;
 pub use garment_obj::GarmentObj;
 pub use glb::Glb;
 pub use obj::Obj;
@@ -41,6 +43,7 @@ use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
+    registry.add::<Frames>();
     registry.add::<Glb>();
     registry.add::<GarmentObj>();
     registry.add::<Obj>();
