@@ -1,6 +1,7 @@
 //! A closed mesh as parry3d's `TriMesh`, with the pseudo-normals that tell inside from outside.
 //!
-//! O(n log n) to build, O(log n) a query. A mesh without triangles, which parry3d refuses, is far
+//! O(n log n) to build, O(log n) a query. Limit: for a point on an edge, to the last bit, the
+//! normal is that of a triangle beside it. A mesh without triangles, which parry3d refuses, is far
 //! from everything.
 
 use super::super::search::BodySkin;
