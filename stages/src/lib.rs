@@ -7,7 +7,7 @@ pub use toile_drape::{collide, drape, engine, fabric, measure, scene, stitch};
 pub use toile_image::{binarise, denoise, edges, photo};
 pub use toile_output::{fit, flat, render, texture, write};
 pub use toile_pattern::{mesh, pattern, place, smooth, style};
-pub use toile_views::{between, panorama};
+pub use toile_views as views;
 
 use toile_core::{Registry, Role, Section};
 

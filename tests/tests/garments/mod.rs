@@ -7,5 +7,6 @@ mod falls;
 mod flat;
 mod outputs;
 mod photos;
+mod published;
 mod turntable;
 mod vest;

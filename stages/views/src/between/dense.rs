@@ -1,7 +1,8 @@
 //! A vector for each pixel, from those of the blocks.
 //!
 //! A pixel takes, of the vectors of its block and of the eight around it, the one with which a
-//! small window around it differs least; so the border of what moves lies at pixels, not at blocks.
+//! small window around it differs least, its own block's before others; so the border of what moves
+//! lies at pixels, not at blocks.
 //! Cost: nine differences of each pixel.
 
 use crate::flow::{BLOCK, FlowField, PARTS, Pyramid, motion};
@@ -13,6 +14,8 @@ use toile_core::{Context, StageError};
 
 /// Half the side of the window, px.
 const WINDOW: usize = 3;
+/// What a pixel's vector costs that leaves its block's by a pixel, grey levels.
+const STIFFNESS: f32 = 1.0;
 /// The difference of what lies beyond the other picture, grey levels.
 const BEYOND: f32 = 40.0;
 
@@ -61,12 +64,15 @@ fn block(blocks: &FlowField, [column, row]: [usize; 2], from: &Plane, to: &RgbIm
     vectors.sort_unstable();
     vectors.dedup();
     let mut least = vec![f32::INFINITY; xs.len() * ys.len()];
+    let own = blocks.vectors.get(row * blocks.columns + column).copied().flatten().unwrap_or_default();
     for v in vectors {
+        let left = (v[0] - own[0]).abs() + (v[1] - own[1]).abs();
+        let leaving = STIFFNESS * left as f32 / PARTS as f32;
         let v = v.map(|c| c as f32 / PARTS as f32);
         let differences = windows(from, to, &xs, &ys, v);
         for (k, difference) in differences.into_iter().enumerate() {
-            if difference < least[k] {
-                least[k] = difference;
+            if difference + leaving < least[k] {
+                least[k] = difference + leaving;
                 lines[k / xs.len() * from.width + xs.start + k % xs.len()] = v;
             }
         }

@@ -14,6 +14,11 @@ const LONGEST_PX: usize = 640;
 /// Inverse depths that differ by less than so many planes are the same.
 const SAME_PLANES: f64 = 2.0;
 
+/// Colours so near to the border of something nearer are partly its own, px; they count so much
+/// where the other photo has a better one.
+const BESIDE_PX: f64 = 2.0;
+const BESIDE: f32 = 1e-3;
+
 /// Makes the view from a place between two photos of an object, by the depth of what they show.
 ///
 /// The camera went around the object, or the object turned on its stand, by an angle that is given;
@@ -134,6 +139,13 @@ impl<'a> Scene<'a> {
         self.depth(side, at).is_some_and(|d| (d - depth).abs() <= SAME_PLANES * self.step)
     }
 
+    /// Whether something nearer is beside a place of a photo, whose colour it then has in part.
+    fn beside_nearer(&self, side: usize, [x, y]: [f64; 2], depth: f64) -> bool {
+        let beside = BESIDE_PX.max(self.factor);
+        let around = [[x - beside, y], [x + beside, y], [x, y - beside], [x, y + beside]];
+        around.iter().any(|p| self.depth(side, *p).is_some_and(|d| d - depth > SAME_PLANES * self.step))
+    }
+
     /// The turn from a photo's camera to a place between.
     fn to_place(&self, side: usize, at: f64) -> f64 {
         if side == 0 { at * self.turn } else { (at - 1.0) * self.turn }
@@ -198,18 +210,19 @@ impl<'a> Scene<'a> {
             // Beyond the frame of both, the border's pixels go on.
             let last = [photo.width(), photo.height()].map(|n| f64::from(n) - 1.0);
             let [x, y] = [0, 1].map(|c| there[c].clamp(0.0, last[c]));
-            Some((cubic(photo, x, y)?, shows))
+            let own = if shows && self.beside_nearer(side, there, seen) { BESIDE } else { 1.0 };
+            Some((cubic(photo, x, y)?, shows, own))
         };
         let weights = [1.0 - at as f32, at as f32];
         let both = [of(0), of(1)];
-        let shown = both.iter().flatten().any(|(_, shows)| *shows);
+        let shown = both.iter().flatten().any(|(_, shows, _)| *shows);
         let (mut sum, mut total) = ([0f32; 3], 0f32);
         for (colour, weight) in both.iter().zip(weights).filter_map(|(s, w)| Some((s.as_ref()?, w))) {
             if shown && !colour.1 {
                 continue;
             }
             // The photo that is not there still counts where the other shows nothing.
-            let weight = weight + 1e-4;
+            let weight = colour.2 * (weight + 1e-4);
             (0..3).for_each(|c| sum[c] += weight * colour.0[c]);
             total += weight;
         }
