@@ -1,6 +1,6 @@
 //! The built-in stages of Toile, gathered from the crates that hold them, in the order in which
-//! data passes through: [`toile_image`], [`toile_views`], [`toile_pattern`], [`toile_body`], [`toile_drape`],
-//! [`toile_output`].
+//! data passes through: [`toile_image`], [`toile_views`], [`toile_pattern`], [`toile_body`],
+//! [`toile_drape`], [`toile_output`].
 
 pub use toile_body as body;
 pub use toile_drape::{collide, drape, engine, fabric, measure, scene, stitch};

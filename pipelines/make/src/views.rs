@@ -15,9 +15,8 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-type Vec3 = [f64; 3];
 /// A file's path below the samples, and its bytes.
-type File = (String, Vec<u8>);
+type SampleFile = (String, Vec<u8>);
 
 /// The camera that turns: size, focal length in pixels, and where it looks, degrees.
 const TURN_SIZE: [u32; 2] = [400, 300];
@@ -53,7 +52,7 @@ pub(crate) fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// Photos all around the studio.
-pub(crate) fn turn() -> Result<Vec<File>, Box<dyn Error>> {
+pub(crate) fn turn() -> Result<Vec<SampleFile>, Box<dyn Error>> {
     let mut files = Vec::new();
     for (k, degrees) in TURN_DEG.iter().enumerate() {
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -76,7 +75,7 @@ pub(crate) fn turn() -> Result<Vec<File>, Box<dyn Error>> {
 }
 
 /// Two photos around the figure, and the one half way.
-pub(crate) fn pair() -> Result<Vec<File>, Box<dyn Error>> {
+pub(crate) fn pair() -> Result<Vec<SampleFile>, Box<dyn Error>> {
     let seen = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let from = [DISTANCE_M * sin, 0.0, -DISTANCE_M * cos];
@@ -93,7 +92,7 @@ pub(crate) fn pair() -> Result<Vec<File>, Box<dyn Error>> {
 }
 
 /// Photos of a grid, each cut so that the axis of the figure stays in place.
-pub(crate) fn grid() -> Result<Vec<File>, Box<dyn Error>> {
+pub(crate) fn grid() -> Result<Vec<SampleFile>, Box<dyn Error>> {
     let seen = |column: f64, row: f64| {
         let middle = f64::from(GRID - 1) / 2.0;
         let from = [(column - middle) * GRID_STEP_M, (middle - row) * GRID_STEP_M, -DISTANCE_M];
@@ -135,7 +134,7 @@ fn jpeg(picture: &RgbImage, quality: u8) -> Result<Vec<u8>, Box<dyn Error>> {
 }
 
 /// The studio around the camera, of brick.
-fn studio(d: Vec3) -> LinearColour {
+fn studio(d: [f64; 3]) -> LinearColour {
     let (wall, p) = panorama::met(d);
     let light = panorama::seen(d);
     match wall {
@@ -157,7 +156,7 @@ fn brick(along: f64, up: f64) -> f64 {
 }
 
 /// What a ray meets: the figure, else the wall behind it.
-fn scene(from: Vec3, d: Vec3) -> LinearColour {
+fn scene(from: [f64; 3], d: [f64; 3]) -> LinearColour {
     let n = d.iter().map(|v| v * v).sum::<f64>().sqrt();
     let d = d.map(|v| v / n);
     let at = |t: f64| [0, 1, 2].map(|c| from[c] + t * d[c]);
@@ -182,7 +181,7 @@ fn half_width(y: f64) -> f64 {
 }
 
 /// About how far a place is outside of the figure, metres.
-fn outside(p: Vec3) -> f64 {
+fn outside(p: [f64; 3]) -> f64 {
     let around = p[0].atan2(-p[2]);
     let folds = 1.0 + 0.05 * smoothstep(0.0, -0.4, p[1]) * (9.0 * around + 0.6 * (5.0 * p[1]).sin()).cos();
     let half = half_width(p[1]) * folds;
@@ -191,7 +190,7 @@ fn outside(p: Vec3) -> f64 {
 }
 
 /// The colour of the figure: a dress with a print, in the light of a window.
-fn dressed(p: Vec3) -> LinearColour {
+fn dressed(p: [f64; 3]) -> LinearColour {
     let slope = [0, 1, 2].map(|c| {
         let moved = |by: f64| outside([0, 1, 2].map(|k| p[k] + if k == c { by } else { 0.0 }));
         moved(1e-4) - moved(-1e-4)

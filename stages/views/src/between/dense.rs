@@ -6,7 +6,7 @@
 //! Cost: nine differences of each pixel.
 
 use crate::flow::{BLOCK, FlowField, PARTS, Pyramid, motion};
-use crate::picture::{Plane, cubic};
+use crate::picture::{GreyPlane, cubic};
 use image::RgbImage;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -20,12 +20,12 @@ const STIFFNESS: f32 = 1.0;
 const BEYOND: f32 = 40.0;
 
 /// Pixels across and down, row by row.
-pub(super) struct Motion {
+pub(super) struct DenseMotion {
     width: usize,
     pub(super) vectors: Vec<[f32; 2]>,
 }
 
-impl Motion {
+impl DenseMotion {
     /// Of a pixel, the nearest one to a place; none beyond the picture.
     pub(super) fn near(&self, x: f64, y: f64) -> Option<[f32; 2]> {
         let (x, y) = (x.round(), y.round());
@@ -38,11 +38,11 @@ impl Motion {
 ///
 /// # Errors
 /// When the run has been stopped.
-pub(super) fn dense(from: &RgbImage, to: &RgbImage, cx: &Context) -> Result<Motion, StageError> {
+pub(super) fn dense(from: &RgbImage, to: &RgbImage, cx: &Context) -> Result<DenseMotion, StageError> {
     let [of_from, of_to] = [from, to].map(|p| Pyramid::of(&super::photos::opaque(p)));
     let blocks = motion(&of_from, &of_to, cx)?;
     let (width, height) = (from.width() as usize, from.height() as usize);
-    let plane = Plane::of(from);
+    let plane = GreyPlane::of(from);
     let row = |row: usize| {
         cx.check()?;
         let mut lines = vec![[0f32; 2]; width * BLOCK.min(height - (row * BLOCK).min(height))];
@@ -53,11 +53,17 @@ pub(super) fn dense(from: &RgbImage, to: &RgbImage, cx: &Context) -> Result<Moti
     };
     let rows: Vec<Result<Vec<[f32; 2]>, StageError>> = (0..blocks.rows).into_par_iter().map(row).collect();
     let vectors = rows.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
-    Ok(Motion { width, vectors })
+    Ok(DenseMotion { width, vectors })
 }
 
 /// The pixels of one block, of the lines of its row.
-fn block(blocks: &FlowField, [column, row]: [usize; 2], from: &Plane, to: &RgbImage, lines: &mut [[f32; 2]]) {
+fn block(
+    blocks: &FlowField,
+    [column, row]: [usize; 2],
+    from: &GreyPlane,
+    to: &RgbImage,
+    lines: &mut [[f32; 2]],
+) {
     let xs = column * BLOCK..((column + 1) * BLOCK).min(from.width);
     let ys = row * BLOCK..((row + 1) * BLOCK).min(from.height);
     let mut vectors: Vec<[i32; 2]> = blocks.near(column, row).collect();
@@ -80,7 +86,7 @@ fn block(blocks: &FlowField, [column, row]: [usize; 2], from: &Plane, to: &RgbIm
 }
 
 /// The sum of differences in the window around each pixel of a block, with that vector.
-fn windows(from: &Plane, to: &RgbImage, xs: &Range<usize>, ys: &Range<usize>, v: [f32; 2]) -> Vec<f32> {
+fn windows(from: &GreyPlane, to: &RgbImage, xs: &Range<usize>, ys: &Range<usize>, v: [f32; 2]) -> Vec<f32> {
     let wide = xs.start.saturating_sub(WINDOW)..(xs.end + WINDOW).min(from.width);
     let high = ys.start.saturating_sub(WINDOW)..(ys.end + WINDOW).min(from.height);
     let one = |x: usize, y: usize| {

@@ -1,10 +1,10 @@
 //! `DepthView`: the view between two photos around an object, by depth.
 
-use super::orbit::Orbit;
+use super::orbit::OrbitCameras;
 use super::photos::{pair, view};
-use super::sweep::{Planes, depths};
+use super::sweep::{SweepPlanes, depths};
 use crate::panorama::Lens;
-use crate::picture::{Plane, cubic};
+use crate::picture::{GreyPlane, cubic};
 use image::RgbImage;
 use rayon::prelude::*;
 use toile_core::prelude::*;
@@ -36,8 +36,8 @@ const BESIDE: f32 = 1e-3;
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
 pub struct DepthView {
-    /// The angle from the first photo's camera to the second one's, positive where the camera went to
-    /// the right or the object turned to the left.
+    /// The angle from the first photo's camera to the second one's, positive where the camera went
+    /// to the right or the object turned to the left.
     #[param(min = -60.0, max = 60.0, unit = "degrees")]
     turn: f64,
     /// The focal length of the camera; it is not estimated.
@@ -61,7 +61,7 @@ impl DepthView {
         let size = [a.width(), a.height()];
         let focal = self.lens.focal(size)?.ok_or_else(unknown_lens)?;
         let scene =
-            Scene::of([&a, &b], focal, self.turn.to_radians(), [1.0 / self.far, 1.0 / self.near], cx)?;
+            DepthScene::of([&a, &b], focal, self.turn.to_radians(), [1.0 / self.far, 1.0 / self.near], cx)?;
         cx.progress(0.9, "view");
         let colours = scene.seen_from(self.at, cx)?;
         Ok(view(&colours, size))
@@ -80,9 +80,9 @@ fn unknown_lens() -> StageError {
 }
 
 /// Two photos with their depths.
-struct Scene<'a> {
+struct DepthScene<'a> {
     photos: [&'a RgbImage; 2],
-    orbit: Orbit,
+    orbit: OrbitCameras,
     /// From the first camera to the second, radians.
     turn: f64,
     /// Inverse depths of the reduced photos, their width, and pixels a pixel of theirs.
@@ -93,9 +93,9 @@ struct Scene<'a> {
 }
 
 /// Where a pixel of the view lies: its inverse depth, and whether both photos agree on it.
-type Place = Option<(f32, bool)>;
+type ViewPlace = Option<(f32, bool)>;
 
-impl<'a> Scene<'a> {
+impl<'a> DepthScene<'a> {
     fn of(
         photos: [&'a RgbImage; 2],
         focal: f64,
@@ -103,23 +103,24 @@ impl<'a> Scene<'a> {
         [far, near]: [f64; 2],
         cx: &Context,
     ) -> Result<Self, StageError> {
-        let mut planes = photos.map(Plane::of);
+        let mut planes = photos.map(GreyPlane::of);
         let mut factor = 1.0;
         while planes[0].width.max(planes[0].height) > LONGEST_PX {
             planes = [planes[0].half(), planes[1].half()];
             factor *= 2.0;
         }
         let size = [photos[0].width() as usize, photos[0].height() as usize];
-        let orbit = Orbit::new(focal, size);
-        let reduced = Orbit { focal: focal / factor, centre: orbit.centre.map(|c| (c + 0.5) / factor - 0.5) };
-        let sweep = Planes::new(far, near, &reduced, turn);
+        let orbit = OrbitCameras::new(focal, size);
+        let reduced =
+            OrbitCameras { focal: focal / factor, centre: orbit.centre.map(|c| (c + 0.5) / factor - 0.5) };
+        let sweep = SweepPlanes::new(far, near, &reduced, turn);
         cx.progress(0.0, "depth of the first photo");
         let [a, b] = &planes;
         let of_a = depths(a, b, &reduced, turn, sweep, cx)?;
         cx.progress(0.45, "depth of the second photo");
         let of_b = depths(b, a, &reduced, -turn, sweep, cx)?;
         cx.figure("planes", sweep.count as f64, "");
-        Ok(Scene { photos, orbit, turn, depths: [of_a, of_b], width: a.width, factor, step: sweep.step })
+        Ok(DepthScene { photos, orbit, turn, depths: [of_a, of_b], width: a.width, factor, step: sweep.step })
     }
 
     /// The inverse depth of a photo at a place.
@@ -155,7 +156,7 @@ impl<'a> Scene<'a> {
     fn seen_from(&self, at: f64, cx: &Context) -> Result<Vec<[f32; 3]>, StageError> {
         let (w, h) = self.photos[0].dimensions();
         let (w, h) = (w as usize, h as usize);
-        let mut places: Vec<Place> = vec![None; w * h];
+        let mut places: Vec<ViewPlace> = vec![None; w * h];
         for side in 0..2 {
             for y in 0..h {
                 if y % 16 == 0 {
@@ -176,7 +177,7 @@ impl<'a> Scene<'a> {
 
     /// Lays a pixel of a photo where it is in the view: what both agree on before what one alone
     /// shows; of the former the nearer, of the latter the farther.
-    fn lay(&self, side: usize, pixel: [f64; 2], at: f64, places: &mut [Place], [w, h]: [usize; 2]) {
+    fn lay(&self, side: usize, pixel: [f64; 2], at: f64, places: &mut [ViewPlace], [w, h]: [usize; 2]) {
         let Some(depth) = self.depth(side, pixel) else { return };
         let across = if side == 0 { self.turn } else { -self.turn };
         let agreed =
@@ -231,7 +232,7 @@ impl<'a> Scene<'a> {
 }
 
 /// Inverse depths of a row; holes take that of the farther side, which is what comes into sight.
-fn filled(places: &[Place], w: usize) -> Vec<f32> {
+fn filled(places: &[ViewPlace], w: usize) -> Vec<f32> {
     let mut out = Vec::with_capacity(places.len());
     for row in places.chunks(w.max(1)) {
         let left = row.iter().scan(None, |last: &mut Option<f32>, p| {

@@ -1,6 +1,6 @@
 //! `FlowView`: the view between two photos, by the motion between them.
 
-use super::dense::{Motion, dense};
+use super::dense::{DenseMotion, dense};
 use super::photos::{pair, view};
 use crate::picture::cubic;
 use image::RgbImage;
@@ -44,9 +44,10 @@ impl FlowView {
     }
 }
 
-/// The motion at a pixel of the view: from the first photo to the second, and which of them show it.
+/// The motion at a pixel of the view: from the first photo to the second, and which of them show
+/// it.
 #[derive(Clone, Copy)]
-struct Moved {
+struct MovedPixel {
     vector: [f32; 2],
     shown: [bool; 2],
     /// How much the photos differ there.
@@ -56,13 +57,13 @@ struct Moved {
 /// The colours at a place between.
 fn between(
     photos: [&RgbImage; 2],
-    motions: [&Motion; 2],
+    motions: [&DenseMotion; 2],
     at: f64,
     cx: &Context,
 ) -> Result<Vec<[f32; 3]>, StageError> {
     let (w, h) = photos[0].dimensions();
     let (w, h) = (w as usize, h as usize);
-    let mut field: Vec<Option<Moved>> = vec![None; w * h];
+    let mut field: Vec<Option<MovedPixel>> = vec![None; w * h];
     // Of what one photo alone shows, that of the nearer one counts first.
     for side in if at <= 0.5 { [0, 1] } else { [1, 0] } {
         cx.check()?;
@@ -99,10 +100,10 @@ fn mixed(a: Option<([f32; 3], f32)>, b: Option<([f32; 3], f32)>) -> Option<[f32;
 /// Lays the motion of one photo's pixels where they are in the view.
 fn splat(
     photos: [&RgbImage; 2],
-    motions: [&Motion; 2],
+    motions: [&DenseMotion; 2],
     side: usize,
     at: f64,
-    field: &mut [Option<Moved>],
+    field: &mut [Option<MovedPixel>],
     w: usize,
 ) {
     let share = if side == 0 { at } else { 1.0 - at };
@@ -119,7 +120,7 @@ fn splat(
         let mut shown = [meets; 2];
         shown[side] = true;
         let vector = if side == 0 { *v } else { v.map(|c| -c) };
-        let moved = Moved { vector, shown, off };
+        let moved = MovedPixel { vector, shown, off };
         let (tx, ty) = (x + share * f64::from(v[0]), y + share * f64::from(v[1]));
         for (tx, ty) in [
             (tx.floor(), ty.floor()),
@@ -140,7 +141,7 @@ fn splat(
 }
 
 /// What no photo's pixel came to takes the motion beside it.
-fn filled(mut field: Vec<Option<Moved>>, w: usize, cx: &Context) -> Result<Vec<Moved>, StageError> {
+fn filled(mut field: Vec<Option<MovedPixel>>, w: usize, cx: &Context) -> Result<Vec<MovedPixel>, StageError> {
     let h = field.len() / w.max(1);
     let mut holes: Vec<usize> = (0..field.len()).filter(|k| field[*k].is_none()).collect();
     while !holes.is_empty() {
@@ -155,13 +156,13 @@ fn filled(mut field: Vec<Option<Moved>>, w: usize, cx: &Context) -> Result<Vec<M
             ];
             around.into_iter().flatten().find_map(|n| field[n])
         };
-        let found: Vec<(usize, Moved)> = holes.iter().filter_map(|k| Some((*k, beside(*k)?))).collect();
+        let found: Vec<(usize, MovedPixel)> = holes.iter().filter_map(|k| Some((*k, beside(*k)?))).collect();
         if found.is_empty() {
             break;
         }
         found.iter().for_each(|(k, m)| field[*k] = Some(*m));
         holes.retain(|k| field[*k].is_none());
     }
-    let still = Moved { vector: [0.0; 2], shown: [true; 2], off: 0.0 };
+    let still = MovedPixel { vector: [0.0; 2], shown: [true; 2], off: 0.0 };
     Ok(field.into_iter().map(|m| m.unwrap_or(still)).collect())
 }

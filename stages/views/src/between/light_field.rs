@@ -45,7 +45,7 @@ pub struct LightField {
 }
 
 /// Photos by row and column.
-struct Grid<'a> {
+struct CameraGrid<'a> {
     columns: usize,
     rows: usize,
     photos: Vec<Cow<'a, RgbImage>>,
@@ -58,7 +58,7 @@ impl LightField {
     pub(super) fn run(&self, photos: Set<Photo>, cx: &Context) -> Result<Set<Photo>, StageError> {
         let names = in_order(photos.iter().map(|(name, _)| name));
         let [w, h] = one_size(&photos, &names)?;
-        let grid = Grid::of(&photos, &names, self.every)?;
+        let grid = CameraGrid::of(&photos, &names, self.every)?;
         cx.figure("photos_used", grid.photos.len() as f64, "");
         let s = self.across * (grid.columns - 1) as f64;
         let t = self.down * (grid.rows - 1) as f64;
@@ -73,7 +73,7 @@ impl LightField {
     }
 }
 
-impl<'a> Grid<'a> {
+impl<'a> CameraGrid<'a> {
     /// The photos of every so manieth row and column.
     fn of(photos: &'a Set<Photo>, names: &[&str], every: usize) -> Result<Self, StageError> {
         let mut places = places(names)?;
@@ -101,7 +101,7 @@ impl<'a> Grid<'a> {
             let text = "a light field needs two photos or more, and there is 1".to_owned();
             return Err(StageError::invalid(text).hint("photograph from more places, or lower `every`"));
         }
-        Ok(Grid { columns: columns.len(), rows: rows.len(), photos: kept, step: every as f64 })
+        Ok(CameraGrid { columns: columns.len(), rows: rows.len(), photos: kept, step: every as f64 })
     }
 
     /// The colour of a ray through a pixel of the view at (s, t).

@@ -7,17 +7,17 @@
 
 /// Cameras of one kind on a circle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Orbit {
+pub(super) struct OrbitCameras {
     /// Focal length, px.
     pub(super) focal: f64,
     /// The pixel that looks at the axis.
     pub(super) centre: [f64; 2],
 }
 
-impl Orbit {
+impl OrbitCameras {
     /// Photos of that size.
-    pub(super) fn new(focal: f64, size: [usize; 2]) -> Orbit {
-        Orbit { focal, centre: size.map(|n| (n as f64 - 1.0) / 2.0) }
+    pub(super) fn new(focal: f64, size: [usize; 2]) -> OrbitCameras {
+        OrbitCameras { focal, centre: size.map(|n| (n as f64 - 1.0) / 2.0) }
     }
 
     /// Where what a camera sees at a pixel with that inverse depth is seen by the camera that is
@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn the_axis_stays_and_there_and_back_is_the_same_place() {
-        let orbit = Orbit::new(400.0, [301, 401]);
+        let orbit = OrbitCameras::new(400.0, [301, 401]);
         let ([x, y], w) = orbit.seen([150.0, 90.0], 1.0, 0.3).unwrap();
         assert!((x - 150.0).abs() < 1e-9 && (y - 90.0).abs() < 1e-9 && (w - 1.0).abs() < 1e-12);
         let (there, w) = orbit.seen([200.0, 50.0], 1.3, 0.2).unwrap();

@@ -1,13 +1,13 @@
 //! Depth along the epipolar lines of two photos.
 //!
-//! Method: planes of equal inverse depth are swept through space (Collins 1996); the cost of a pixel
-//! on a plane is the Hamming distance of the census of its surroundings (Zabih, Woodfill 1994) and
-//! the difference of brightness; costs are summed along eight paths, with a penalty for steps
-//! (semi-global matching: Hirschmuller 2008); between planes by a parabola. Cost: pixels times
-//! planes times eight. Limit: photos are reduced to 640 px, so depth is no finer than that.
+//! Method: planes of equal inverse depth are swept through space (Collins 1996); the cost of a
+//! pixel on a plane is the Hamming distance of the census of its surroundings (Zabih, Woodfill
+//! 1994) and the difference of brightness; costs are summed along eight paths, with a penalty for
+//! steps (semi-global matching: Hirschmuller 2008); between planes by a parabola. Cost: pixels
+//! times planes times eight. Limit: photos are reduced to 640 px, so depth is no finer than that.
 
-use super::orbit::Orbit;
-use crate::picture::Plane;
+use super::orbit::OrbitCameras;
+use crate::picture::GreyPlane;
 use rayon::prelude::*;
 use toile_core::{Context, StageError};
 
@@ -23,18 +23,18 @@ const PATHS: [[i64; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1]
 
 /// Planes of equal steps in inverse depth.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Planes {
+pub(super) struct SweepPlanes {
     pub(super) first: f64,
     pub(super) step: f64,
     pub(super) count: usize,
 }
 
-impl Planes {
+impl SweepPlanes {
     /// From far to near (inverse depths), about a pixel of motion apart.
-    pub(super) fn new(far: f64, near: f64, orbit: &Orbit, turn: f64) -> Planes {
+    pub(super) fn new(far: f64, near: f64, orbit: &OrbitCameras, turn: f64) -> SweepPlanes {
         let motion = orbit.focal * 2.0 * (turn.abs() / 2.0).sin() * (near - far);
         let count = (motion.ceil() as usize).clamp(12, 192);
-        Planes { first: far, step: (near - far) / (count - 1) as f64, count }
+        SweepPlanes { first: far, step: (near - far) / (count - 1) as f64, count }
     }
 }
 
@@ -43,11 +43,11 @@ impl Planes {
 /// # Errors
 /// When the run has been stopped.
 pub(super) fn depths(
-    a: &Plane,
-    b: &Plane,
-    orbit: &Orbit,
+    a: &GreyPlane,
+    b: &GreyPlane,
+    orbit: &OrbitCameras,
     turn: f64,
-    planes: Planes,
+    planes: SweepPlanes,
     cx: &Context,
 ) -> Result<Vec<f32>, StageError> {
     let costs = costs(a, b, orbit, turn, planes, cx)?;
@@ -75,11 +75,11 @@ pub(super) fn depths(
 
 /// The cost of each pixel on each plane.
 fn costs(
-    a: &Plane,
-    b: &Plane,
-    orbit: &Orbit,
+    a: &GreyPlane,
+    b: &GreyPlane,
+    orbit: &OrbitCameras,
     turn: f64,
-    planes: Planes,
+    planes: SweepPlanes,
     cx: &Context,
 ) -> Result<Vec<u16>, StageError> {
     let (of_a, of_b) = (census(a), census(b));
@@ -107,7 +107,7 @@ fn costs(
 }
 
 /// Which of the pixels of the 5 x 5 around each are darker than it.
-fn census(plane: &Plane) -> Vec<u32> {
+fn census(plane: &GreyPlane) -> Vec<u32> {
     let at = |x: i64, y: i64| {
         let (x, y) = (x.clamp(0, plane.width as i64 - 1), y.clamp(0, plane.height as i64 - 1));
         plane.levels[y as usize * plane.width + x as usize]
@@ -124,7 +124,7 @@ fn census(plane: &Plane) -> Vec<u32> {
 fn along(
     costs: &[u16],
     sums: &mut [u16],
-    a: &Plane,
+    a: &GreyPlane,
     [dx, dy]: [i64; 2],
     planes: usize,
     cx: &Context,
@@ -163,7 +163,7 @@ fn along(
 }
 
 /// A jump costs less where brightness jumps as well.
-fn jump(a: &Plane, k: usize, before: usize) -> u16 {
+fn jump(a: &GreyPlane, k: usize, before: usize) -> u16 {
     let slope = (a.levels[k] - a.levels[before]).abs();
     ((f32::from(JUMP) / (1.0 + slope / 30.0)) as u16).max(STEP + 2)
 }

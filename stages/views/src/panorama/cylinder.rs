@@ -1,11 +1,12 @@
 //! `Cylinder`: one panorama from photos of a camera that turns.
 
-use super::blend::{Blend, Blended, Canvas};
-use super::camera::Camera;
+use super::blend::{Blend, Blended, blended};
+use super::camera::CylinderCamera;
+use super::canvas::PanoramaCanvas;
 use super::focal::{ROUGH_PX, degrees, estimated};
-use super::layout::{Layout, Turn, laid_out, neighbours};
+use super::layout::{CameraTurn, PanoramaLayout, laid_out, neighbours};
 use super::lens::Lens;
-use super::pair::{LONGEST_PX, Reduced};
+use super::pair::{LONGEST_PX, ReducedPhoto};
 use crate::picture::{flipped, in_order};
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
@@ -49,8 +50,8 @@ pub struct Cylinder {
     #[param(default = Lens::Estimate)]
     lens: Lens,
     /// Whether the camera turned all around.
-    #[param(default = Turn::Auto)]
-    turn: Turn,
+    #[param(default = CameraTurn::Auto)]
+    turn: CameraTurn,
     /// How overlapping photos become one picture.
     #[param(default = Blend::Multiband)]
     blend: Blend,
@@ -58,8 +59,8 @@ pub struct Cylinder {
     /// camera whose exposure was held.
     #[param(default = true)]
     exposure: bool,
-    /// The panorama is cut to the rows that it fills from side to side. `false` keeps all rows; what
-    /// no photo shows is transparent.
+    /// The panorama is cut to the rows that it fills from side to side. `false` keeps all rows;
+    /// what no photo shows is transparent.
     #[param(default = true)]
     crop: bool,
 }
@@ -74,7 +75,7 @@ impl Cylinder {
         let layout = self.layout(&pixels, &names, size, cx)?;
         figures(&layout, &names, size, cx);
         let ones = vec![1.0; pixels.len()];
-        let plain = Canvas::new(&pixels, &ones, &layout);
+        let plain = PanoramaCanvas::new(&pixels, &ones, &layout);
         check_size(plain.size)?;
         let gains = if self.exposure {
             super::exposure::gains(pixels.len(), &plain.overlaps())
@@ -82,11 +83,11 @@ impl Cylinder {
             ones.clone()
         };
         cx.progress(0.8, "blending");
-        let blended = Canvas::new(&pixels, &gains, &layout).blended(self.blend, cx)?;
-        if let Some(psnr) = blended.overlap_psnr {
+        let made = blended(&PanoramaCanvas::new(&pixels, &gains, &layout), self.blend, cx)?;
+        if let Some(psnr) = made.overlap_psnr {
             cx.figure("overlap_psnr", psnr, "dB");
         }
-        let panorama = self.cropped(blended, cx);
+        let panorama = self.cropped(made, cx);
         Ok([(NAME.to_owned(), panorama)].into_iter().collect())
     }
 
@@ -103,10 +104,10 @@ impl Cylinder {
         names: &[&str],
         size: [u32; 2],
         cx: &Context,
-    ) -> Result<Layout, StageError> {
+    ) -> Result<PanoramaLayout, StageError> {
         let given = self.lens.focal(size)?;
-        let reduced = |longest: usize| -> Vec<Reduced> {
-            pixels.par_iter().map(|p| Reduced::new(p, longest)).collect()
+        let reduced = |longest: usize| -> Vec<ReducedPhoto> {
+            pixels.par_iter().map(|p| ReducedPhoto::new(p, longest)).collect()
         };
         let focal = match given {
             Some(focal) => focal,
@@ -120,7 +121,7 @@ impl Cylinder {
         let photos = reduced(LONGEST_PX);
         cx.progress(0.5, "registering");
         let laid = |focal: f64| {
-            let camera = Camera::new(focal, size);
+            let camera = CylinderCamera::new(focal, size);
             laid_out(&photos, neighbours(&photos, names, camera, cx)?, camera, self.turn, cx)
         };
         let mut layout = laid(focal)?;
@@ -181,7 +182,7 @@ fn photo(pixels: RgbImage, alpha: Option<GrayImage>) -> Photo {
 }
 
 /// Shifts, residuals and what the camera did, for `metrics.json`.
-fn figures(layout: &Layout, names: &[&str], size: [u32; 2], cx: &Context) {
+fn figures(layout: &PanoramaLayout, names: &[&str], size: [u32; 2], cx: &Context) {
     cx.figure("focal_px", layout.camera.focal, "px");
     cx.figure("view_deg", degrees(layout.camera.focal, size), "degrees");
     cx.figure("turn_deg", layout.turn_deg(), "degrees");

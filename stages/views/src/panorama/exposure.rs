@@ -13,7 +13,7 @@ const MOST: f64 = 3.0;
 
 /// Mean levels of two photos, by their numbers, over what both show.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Overlap {
+pub(super) struct PhotoOverlap {
     pub(super) photos: [usize; 2],
     pub(super) means: [f64; 2],
     /// Pixels, relative to the other pairs.
@@ -21,9 +21,9 @@ pub(super) struct Overlap {
 }
 
 /// A factor for the levels of each of `count` photos; all one where they cannot be told.
-pub(super) fn gains(count: usize, overlaps: &[Overlap]) -> Vec<f64> {
+pub(super) fn gains(count: usize, overlaps: &[PhotoOverlap]) -> Vec<f64> {
     let (mut matrix, mut right) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
-    for Overlap { photos: [i, j], means: [a, b], weight } in overlaps {
+    for PhotoOverlap { photos: [i, j], means: [a, b], weight } in overlaps {
         if *i >= count || *j >= count || !(a.is_finite() && b.is_finite() && *weight > 0.0) {
             continue;
         }
@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn a_dark_photo_is_brightened_and_its_neighbours_darkened() {
-        let overlap = |photos, means| Overlap { photos, means, weight: 1.0 };
+        let overlap = |photos, means| PhotoOverlap { photos, means, weight: 1.0 };
         let found = gains(3, &[overlap([0, 1], [120.0, 90.0]), overlap([1, 2], [90.0, 120.0])]);
         let means = [120.0 * found[0], 90.0 * found[1], 120.0 * found[2]];
         assert!((means[0] - means[1]).abs() < 12.0 && (means[0] - means[2]).abs() < 1e-9, "{means:?}");
@@ -62,6 +62,9 @@ mod tests {
     #[test]
     fn what_cannot_be_told_is_left_alone() {
         assert_eq!(gains(2, &[]), [1.0; 2]);
-        assert_eq!(gains(2, &[Overlap { photos: [0, 1], means: [f64::NAN, 3.0], weight: 1.0 }]), [1.0; 2]);
+        assert_eq!(
+            gains(2, &[PhotoOverlap { photos: [0, 1], means: [f64::NAN, 3.0], weight: 1.0 }]),
+            [1.0; 2]
+        );
     }
 }

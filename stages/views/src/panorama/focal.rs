@@ -7,9 +7,9 @@
 //! Limit: of photos that overlap by less than a fifth, or of far things without detail, the least
 //! difference is flat.
 
-use super::camera::Camera;
+use super::camera::CylinderCamera;
 use super::lens::view_of;
-use super::pair::{Reduced, register};
+use super::pair::{ReducedPhoto, register};
 use rayon::prelude::*;
 use toile_core::prelude::*;
 
@@ -30,9 +30,13 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 ///
 /// # Errors
 /// When the run has been stopped.
-pub(super) fn estimated(photos: &[Reduced], size: [u32; 2], cx: &Context) -> Result<Option<f64>, StageError> {
+pub(super) fn estimated(
+    photos: &[ReducedPhoto],
+    size: [u32; 2],
+    cx: &Context,
+) -> Result<Option<f64>, StageError> {
     let focal = |view: f64| f64::from(size[0]) / 2.0 / (view.to_radians() / 2.0).tan();
-    let cost = |view: f64| misfit(photos, Camera::new(focal(view), size), cx);
+    let cost = |view: f64| misfit(photos, CylinderCamera::new(focal(view), size), cx);
     let steps = ((LAST_DEG - FIRST_DEG) / STEP_DEG).round() as usize;
     let mut tried = Vec::new();
     for k in 0..=steps {
@@ -72,7 +76,7 @@ pub(super) fn estimated(photos: &[Reduced], size: [u32; 2], cx: &Context) -> Res
 const UNLIKE: f64 = 1.0;
 
 /// The mean over the pairs of one less their likeness.
-fn misfit(photos: &[Reduced], camera: Camera, cx: &Context) -> Result<f64, StageError> {
+fn misfit(photos: &[ReducedPhoto], camera: CylinderCamera, cx: &Context) -> Result<f64, StageError> {
     let pair = |k: usize| match (photos.get(k), photos.get(k + 1)) {
         (Some(a), Some(b)) => Ok(register(a, b, camera, cx)?.map_or(UNLIKE, |f| 1.0 - f.likeness)),
         _ => Ok(UNLIKE),

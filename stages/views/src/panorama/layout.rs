@@ -1,8 +1,8 @@
 //! Where all photos lie around the camera, and whether they close a ring.
 
-use super::align::Fit;
-use super::camera::Camera;
-use super::pair::{Reduced, register};
+use super::align::ShiftFit;
+use super::camera::CylinderCamera;
+use super::pair::{ReducedPhoto, register};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use toile_core::prelude::*;
@@ -10,7 +10,7 @@ use toile_core::prelude::*;
 /// How far the camera turned.
 #[choice]
 #[derive(Copy, Eq)]
-pub enum Turn {
+pub enum CameraTurn {
     /// Whole where the last photo fits onto the first one.
     Auto,
     /// All around: the panorama's right side goes on at its left.
@@ -25,12 +25,12 @@ const NEAR_WHOLE: f64 = 0.12;
 
 /// Photos around their camera.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
-    pub(super) camera: Camera,
+pub(super) struct PanoramaLayout {
+    pub(super) camera: CylinderCamera,
     /// The place of each photo's centre on the cylinder, px; the first is at 0.
     pub(super) places: Vec<[f64; 2]>,
     /// How each photo fits to the next, and the last to the first of a ring.
-    pub(super) pairs: Vec<Fit>,
+    pub(super) pairs: Vec<ShiftFit>,
     pub(super) closed: bool,
     /// What was left between the last photo and the first of a ring, px.
     pub(super) gap: [f64; 2],
@@ -41,17 +41,17 @@ pub(super) struct Layout {
 /// # Errors
 /// For the first pair that does not overlap, by `names`; when the run has been stopped.
 pub(super) fn neighbours(
-    photos: &[Reduced],
+    photos: &[ReducedPhoto],
     names: &[&str],
-    camera: Camera,
+    camera: CylinderCamera,
     cx: &Context,
-) -> Result<Vec<Fit>, StageError> {
+) -> Result<Vec<ShiftFit>, StageError> {
     let pair = |k: usize| {
         let (a, b) = (photos.get(k), photos.get(k + 1));
         let fit = a.zip(b).map_or(Ok(None), |(a, b)| register(a, b, camera, cx))?;
         fit.ok_or_else(|| apart(names.get(k).unwrap_or(&""), names.get(k + 1).unwrap_or(&"")))
     };
-    let fits: Vec<Result<Fit, StageError>> =
+    let fits: Vec<Result<ShiftFit, StageError>> =
         (0..photos.len().saturating_sub(1)).into_par_iter().map(pair).collect();
     // The first error in order, whichever came first in time.
     fits.into_iter().collect()
@@ -63,24 +63,24 @@ pub(super) fn neighbours(
 /// Where a whole turn is asked for and the last photo does not fit onto the first; when the run has
 /// been stopped.
 pub(super) fn laid_out(
-    photos: &[Reduced],
-    mut pairs: Vec<Fit>,
-    camera: Camera,
-    turn: Turn,
+    photos: &[ReducedPhoto],
+    mut pairs: Vec<ShiftFit>,
+    camera: CylinderCamera,
+    turn: CameraTurn,
     cx: &Context,
-) -> Result<Layout, StageError> {
+) -> Result<PanoramaLayout, StageError> {
     let whole = TAU * camera.focal;
     let total: f64 = pairs.iter().map(|f| f.shift[0]).sum();
     // From the last photo on to the first: how far it should be.
     let left = whole * total.signum() - total;
     let near = left.abs() < 2.0 * camera.reach() + NEAR_WHOLE * whole && photos.len() > 2;
     let closing = match (turn, photos) {
-        (Turn::Auto, [first, .., last]) if near => register(last, first, camera, cx)?,
-        (Turn::Whole, [first, .., last]) => register(last, first, camera, cx)?,
+        (CameraTurn::Auto, [first, .., last]) if near => register(last, first, camera, cx)?,
+        (CameraTurn::Whole, [first, .., last]) => register(last, first, camera, cx)?,
         _ => None,
     };
     let closing = closing.filter(|f| (f.shift[0] - left).abs() < NEAR_WHOLE * whole);
-    if turn == Turn::Whole && closing.is_none() {
+    if turn == CameraTurn::Whole && closing.is_none() {
         return Err(not_closed(total / camera.focal));
     }
     let gap = closing.map_or([0.0; 2], |f| {
@@ -96,10 +96,10 @@ pub(super) fn laid_out(
         at = [at[0] + fit.shift[0] + part[0], at[1] + fit.shift[1] + part[1]];
         places.push(at);
     }
-    Ok(Layout { camera, places, pairs, closed: closing.is_some(), gap })
+    Ok(PanoramaLayout { camera, places, pairs, closed: closing.is_some(), gap })
 }
 
-impl Layout {
+impl PanoramaLayout {
     /// The sum of all shifts of a ring, px: a whole turn where the focal length is right.
     pub(super) fn around(&self) -> f64 {
         self.pairs.iter().map(|f| f.shift[0]).sum()

@@ -11,11 +11,13 @@
 //! | `focal` | the focal length, from the photos |
 //! | `layout` | all photos around the camera, the ring closed |
 //! | `exposure` | a gain for each photo |
+//! | `canvas` | what each photo shows of the panorama |
 //! | `blend`, `multiband` | the panorama's pixels |
 
 mod align;
 mod blend;
 mod camera;
+mod canvas;
 mod cylinder;
 mod exposure;
 mod focal;
@@ -29,7 +31,7 @@ mod tests;
 
 pub use blend::Blend;
 pub use cylinder::{Cylinder, MAX_PHOTOS, MIN_SIDE_PX};
-pub use layout::Turn;
+pub use layout::CameraTurn;
 pub use lens::Lens;
 
 use toile_core::Registry;

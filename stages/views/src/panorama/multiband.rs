@@ -4,7 +4,7 @@
 //! seam as wide as what it holds is coarse. Smoothing: three means over a window, each in time
 //! that does not depend on its width (Wells 1986). Cost: three smoothed copies of each photo.
 
-use super::blend::Canvas;
+use super::canvas::PanoramaCanvas;
 use rayon::prelude::*;
 use toile_core::{Context, StageError};
 
@@ -19,7 +19,7 @@ type Covered = [f32; 4];
 /// # Errors
 /// When the run has been stopped.
 pub(super) fn blended(
-    canvas: &Canvas<'_>,
+    canvas: &PanoramaCanvas<'_>,
     owner: &[Option<usize>],
     cx: &Context,
 ) -> Result<Vec<[f32; 3]>, StageError> {
@@ -41,7 +41,7 @@ pub(super) fn blended(
 
 /// Adds one photo's part of a band.
 fn add(
-    canvas: &Canvas<'_>,
+    canvas: &PanoramaCanvas<'_>,
     photo: usize,
     owner: &[Option<usize>],
     band: usize,

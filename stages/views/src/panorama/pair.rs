@@ -6,10 +6,10 @@
 //! there, the best of them on the halved pictures up to the photos themselves. The last refinement
 //! is by the levels: at the border of a photo the window is one-sided, and detail is biased.
 
-use super::align::{Fit, fits, refined};
-use super::camera::Camera;
+use super::align::{ShiftFit, fits, refined};
+use super::camera::CylinderCamera;
 use super::phase::candidates;
-use crate::picture::Plane;
+use crate::picture::GreyPlane;
 use toile_core::{Context, StageError};
 
 /// Photos are registered at most this long, px: a tenth of a pixel there is half a pixel of a photo
@@ -30,39 +30,39 @@ const LEAST_LIKENESS: f64 = 0.5;
 
 /// A photo as it is registered: halved until it is short enough.
 #[derive(Debug)]
-pub(super) struct Reduced {
+pub(super) struct ReducedPhoto {
     /// How often it was halved.
     pub(super) halvings: u32,
-    plane: Plane,
+    plane: GreyPlane,
 }
 
-impl Reduced {
+impl ReducedPhoto {
     /// Of a photo, at most `longest` px long.
-    pub(super) fn new(photo: &image::RgbImage, longest: usize) -> Reduced {
-        let (mut plane, mut halvings) = (Plane::of(photo), 0);
+    pub(super) fn new(photo: &image::RgbImage, longest: usize) -> ReducedPhoto {
+        let (mut plane, mut halvings) = (GreyPlane::of(photo), 0);
         while plane.width.max(plane.height) > longest {
             (plane, halvings) = (plane.half(), halvings + 1);
         }
-        Reduced { halvings, plane }
+        ReducedPhoto { halvings, plane }
     }
 
     /// Its detail on the cylinder, from the finest picture to the coarsest.
-    fn unrolled(&self, camera: Camera) -> Unrolled {
+    fn unrolled(&self, camera: CylinderCamera) -> UnrolledPhoto {
         let raw = camera.halved(self.halvings).unrolled(&self.plane);
         let mut levels = vec![detail(&raw)];
         while let Some(last) = levels.last().filter(|l| l.width.max(l.height) > SEARCH_PX) {
             levels.push(last.half());
         }
-        Unrolled { raw, levels }
+        UnrolledPhoto { raw, levels }
     }
 }
 
 /// A photo on the cylinder.
-struct Unrolled {
+struct UnrolledPhoto {
     /// Its levels.
-    raw: Plane,
+    raw: GreyPlane,
     /// Its detail, halved again and again.
-    levels: Vec<Plane>,
+    levels: Vec<GreyPlane>,
 }
 
 /// Where the second photo lies from the first on the cylinder, px of the photos; none where they do
@@ -71,21 +71,21 @@ struct Unrolled {
 /// # Errors
 /// When the run has been stopped.
 pub(super) fn register(
-    a: &Reduced,
-    b: &Reduced,
-    camera: Camera,
+    a: &ReducedPhoto,
+    b: &ReducedPhoto,
+    camera: CylinderCamera,
     cx: &Context,
-) -> Result<Option<Fit>, StageError> {
+) -> Result<Option<ShiftFit>, StageError> {
     let (a_levels, b_levels) = (a.unrolled(camera), b.unrolled(camera));
     cx.check()?;
     let (Some(coarse_a), Some(coarse_b)) = (a_levels.levels.last(), b_levels.levels.last()) else {
         return Ok(None);
     };
     let starts = candidates(coarse_a, coarse_b).into_iter().map(|s| s.map(f64::from));
-    let mut starts: Vec<Fit> =
+    let mut starts: Vec<ShiftFit> =
         starts.filter_map(|s| fits(coarse_a, coarse_b, s)).filter(|f| f.overlap >= LEAST_OVERLAP).collect();
     starts.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
-    let mut best: Option<Fit> = None;
+    let mut best: Option<ShiftFit> = None;
     for start in starts.iter().take(REFINED) {
         let Some(fit) = refined(coarse_a, coarse_b, start.shift, LEAST_OVERLAP, cx)? else { continue };
         if best.is_none_or(|b| evidence(&fit) > evidence(&b)) {
@@ -99,19 +99,19 @@ pub(super) fn register(
     let Some(fit) = best.filter(|f| f.likeness >= LEAST_LIKENESS) else { return Ok(None) };
     let by_level = refined(&a_levels.raw, &b_levels.raw, fit.shift, LEAST_OVERLAP, cx)?;
     // What moves the shift by more than pixels is no refinement: a slow change of light.
-    let near = |f: &Fit| (f.shift[0] - fit.shift[0]).hypot(f.shift[1] - fit.shift[1]) < NEAR_PX;
-    let Fit { shift, residual, .. } = by_level.filter(near).unwrap_or(fit);
+    let near = |f: &ShiftFit| (f.shift[0] - fit.shift[0]).hypot(f.shift[1] - fit.shift[1]) < NEAR_PX;
+    let ShiftFit { shift, residual, .. } = by_level.filter(near).unwrap_or(fit);
     let factor = f64::from(2u32.pow(a.halvings));
-    Ok(Some(Fit { shift: shift.map(|s| s * factor), residual, ..fit }))
+    Ok(Some(ShiftFit { shift: shift.map(|s| s * factor), residual, ..fit }))
 }
 
 /// How unlikely a likeness over so many pixels is by chance (Fisher's z).
-fn evidence(fit: &Fit) -> f64 {
+fn evidence(fit: &ShiftFit) -> f64 {
     fit.likeness.clamp(-0.999_99, 0.999_99).atanh() * fit.overlap.sqrt()
 }
 
 /// The level less the mean of the seen pixels in a window around.
-fn detail(plane: &Plane) -> Plane {
+fn detail(plane: &GreyPlane) -> GreyPlane {
     let radius = (plane.width.max(plane.height) / WINDOW).max(2);
     let (w, h) = (plane.width, plane.height);
     // Sums of levels and counts above and left of each pixel's corner.
@@ -135,7 +135,7 @@ fn detail(plane: &Plane) -> Plane {
         of(0) / of(1).max(1.0)
     };
     let level = |k: usize| if plane.seen[k] { plane.levels[k] - mean(k % w, k / w) as f32 } else { 0.0 };
-    Plane { width: w, height: h, levels: (0..w * h).map(level).collect(), seen: plane.seen.clone() }
+    GreyPlane { width: w, height: h, levels: (0..w * h).map(level).collect(), seen: plane.seen.clone() }
 }
 
 #[cfg(test)]
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn a_slow_change_of_light_is_no_detail() {
         let levels = (0..100 * 80).map(|k| (k % 100) as f32 + 0.5 * (k / 100) as f32);
-        let plane = Plane { width: 100, height: 80, levels: levels.collect(), seen: vec![true; 8000] };
+        let plane = GreyPlane { width: 100, height: 80, levels: levels.collect(), seen: vec![true; 8000] };
         let detail = detail(&plane);
         assert!(detail.levels[40 * 100 + 50].abs() < 1e-3, "{}", detail.levels[4050]);
         assert!(detail.levels.iter().all(|l| l.abs() < 7.0));

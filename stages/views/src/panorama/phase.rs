@@ -5,7 +5,7 @@
 //! place of its own, and fade out at their borders. Where little overlaps, the greatest value may
 //! be another: several are given. Cost: three transforms of the field. Library: rustfft.
 
-use crate::picture::Plane;
+use crate::picture::GreyPlane;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
@@ -20,9 +20,9 @@ const FADE: f64 = 0.08;
 const SHORTEST: f64 = 2.5;
 
 /// The most likely shifts `s` with `a(p) = b(p - s)`, whole pixels, the likeliest first.
-pub(super) fn candidates(a: &Plane, b: &Plane) -> Vec<[i32; 2]> {
+pub(super) fn candidates(a: &GreyPlane, b: &GreyPlane) -> Vec<[i32; 2]> {
     let size = [a.width.max(b.width), a.height.max(b.height)].map(|n| (2 * n.max(1)).next_power_of_two());
-    let field = Field::new(size);
+    let field = FourierField::new(size);
     let (mut a, b) = (field.spectrum(a), field.spectrum(b));
     for (k, (p, q)) in a.iter_mut().zip(&b).enumerate() {
         let cross = *p * q.conj();
@@ -32,21 +32,21 @@ pub(super) fn candidates(a: &Plane, b: &Plane) -> Vec<[i32; 2]> {
 }
 
 /// Transforms of one size.
-struct Field {
+struct FourierField {
     size: [usize; 2],
     forward: [Arc<dyn Fft<f32>>; 2],
     backward: [Arc<dyn Fft<f32>>; 2],
 }
 
-impl Field {
-    fn new(size: [usize; 2]) -> Field {
+impl FourierField {
+    fn new(size: [usize; 2]) -> FourierField {
         let mut planner = FftPlanner::new();
         let forward = size.map(|n| planner.plan_fft_forward(n));
-        Field { size, forward, backward: size.map(|n| planner.plan_fft_inverse(n)) }
+        FourierField { size, forward, backward: size.map(|n| planner.plan_fft_inverse(n)) }
     }
 
     /// The spectrum of a picture less its mean, faded out; transposed.
-    fn spectrum(&self, plane: &Plane) -> Vec<Complex<f32>> {
+    fn spectrum(&self, plane: &GreyPlane) -> Vec<Complex<f32>> {
         let seen = plane.levels.iter().zip(&plane.seen).filter(|(_, s)| **s).map(|(l, _)| f64::from(*l));
         let n = seen.clone().count().max(1);
         let mean = (seen.sum::<f64>() / n as f64) as f32;
@@ -126,9 +126,9 @@ mod tests {
     use super::*;
     use crate::panorama::tests::noise;
 
-    fn part(x: i32, y: i32) -> Plane {
+    fn part(x: i32, y: i32) -> GreyPlane {
         let levels = (0..60 * 80).map(|k| noise(f64::from(k % 80 + x), f64::from(k / 80 + y)));
-        Plane { width: 80, height: 60, levels: levels.collect(), seen: vec![true; 60 * 80] }
+        GreyPlane { width: 80, height: 60, levels: levels.collect(), seen: vec![true; 60 * 80] }
     }
 
     #[test]
@@ -140,9 +140,9 @@ mod tests {
 
     #[test]
     fn a_blank_picture_has_no_peak_and_no_panic() {
-        let blank = Plane { width: 5, height: 1, levels: vec![3.0; 5], seen: vec![true; 5] };
+        let blank = GreyPlane { width: 5, height: 1, levels: vec![3.0; 5], seen: vec![true; 5] };
         assert!(candidates(&blank, &blank).len() <= CANDIDATES);
-        let unseen = Plane { seen: vec![false; 5], ..blank.clone() };
+        let unseen = GreyPlane { seen: vec![false; 5], ..blank.clone() };
         assert!(candidates(&unseen, &blank).is_empty());
     }
 }

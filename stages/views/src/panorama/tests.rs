@@ -1,7 +1,7 @@
 //! Panoramas of a scene that is known.
 #![allow(clippy::unwrap_used)]
 
-use super::camera::Camera;
+use super::camera::CylinderCamera;
 use super::*;
 use crate::picture::psnr;
 use image::{Rgb, RgbImage};
@@ -52,7 +52,7 @@ fn scene(d: [f64; 3]) -> [u8; 3] {
 }
 
 /// A photo by a camera that looks in a direction around the axis.
-fn photo(camera: Camera, angle: f64) -> RgbImage {
+fn photo(camera: CylinderCamera, angle: f64) -> RgbImage {
     let [w, h] = camera.size.map(|n| n as u32);
     RgbImage::from_fn(w, h, |x, y| {
         let (x, y) = (f64::from(x) - camera.centre[0], f64::from(y) - camera.centre[1]);
@@ -102,7 +102,7 @@ proptest! {
     #[test]
     fn turns_are_found_within_half_a_pixel(angles in prop::collection::vec(8.0f64..26.0, 3), view in 40.0f64..75.0) {
         let focal = 100.0 / (view.to_radians() / 2.0).tan();
-        let camera = Camera::new(focal, [200, 150]);
+        let camera = CylinderCamera::new(focal, [200, 150]);
         let mut at = 0.0;
         let photos: Vec<RgbImage> = std::iter::once(0.0).chain(angles.iter().map(|a| { at += a.to_radians(); at }))
             .map(|a| photo(camera, a)).collect();
@@ -118,14 +118,14 @@ proptest! {
 }
 
 /// Ten photos all around, some turned farther than others.
-fn around(camera: Camera) -> Vec<RgbImage> {
+fn around(camera: CylinderCamera) -> Vec<RgbImage> {
     (0..10).map(|k| photo(camera, TAU * (f64::from(k) + 0.2 * f64::from(k % 3)) / 10.0)).collect()
 }
 
 #[test]
 fn a_whole_turn_closes_and_tells_the_focal_length() {
     let focal = 210.0;
-    let camera = Camera::new(focal, [240, 180]);
+    let camera = CylinderCamera::new(focal, [240, 180]);
     for (blend, lens) in [("Feather", "Estimate"), ("Multiband", "Pixels(210)")] {
         let (panorama, figures) =
             made(&stage(&format!("(blend: {blend}, lens: {lens})")), set(around(camera))).unwrap();
@@ -142,7 +142,7 @@ fn a_whole_turn_closes_and_tells_the_focal_length() {
 
 #[test]
 fn photos_of_other_exposure_become_equally_bright() {
-    let camera = Camera::new(210.0, [240, 180]);
+    let camera = CylinderCamera::new(210.0, [240, 180]);
     let photos: Vec<RgbImage> = (0..3)
         .map(|k| {
             let mut p = photo(camera, 0.35 * f64::from(k));
@@ -158,7 +158,7 @@ fn photos_of_other_exposure_become_equally_bright() {
 
 #[test]
 fn photos_from_right_to_left_and_mirrored_ones_are_the_same_panorama() {
-    let camera = Camera::new(210.0, [240, 180]);
+    let camera = CylinderCamera::new(210.0, [240, 180]);
     let photos: Vec<RgbImage> = (0..3).map(|k| photo(camera, 0.4 * f64::from(k))).collect();
     let stage = stage("(lens: Pixels(210))");
     let forwards = made(&stage, set(photos.clone())).unwrap().0.pixels;
@@ -178,7 +178,7 @@ fn photos_from_right_to_left_and_mirrored_ones_are_the_same_panorama() {
 
 #[test]
 fn rows_that_are_not_filled_are_cut_or_transparent() {
-    let camera = Camera::new(210.0, [240, 180]);
+    let camera = CylinderCamera::new(210.0, [240, 180]);
     let photos = || set((0..2).map(|k| photo(camera, 0.4 * f64::from(k))));
     let (cut, _) = made(&stage("(lens: Pixels(210))"), photos()).unwrap();
     assert!(
@@ -194,7 +194,7 @@ fn rows_that_are_not_filled_are_cut_or_transparent() {
 
 #[test]
 fn photos_that_make_no_panorama_are_refused_with_what_to_do() {
-    let camera = Camera::new(210.0, [240, 180]);
+    let camera = CylinderCamera::new(210.0, [240, 180]);
     let order = "add the other photos of the turn to `photos`, named in their order: \"01\", \"02\"";
     let (message, hint) = refused(set([]));
     assert_eq!(
@@ -234,7 +234,7 @@ fn photos_that_make_no_panorama_are_refused_with_what_to_do() {
 
 #[test]
 fn a_turn_that_does_not_close_is_refused_where_a_whole_one_is_asked_for() {
-    let camera = Camera::new(210.0, [240, 180]);
+    let camera = CylinderCamera::new(210.0, [240, 180]);
     let photos = set((0..3).map(|k| photo(camera, 0.4 * f64::from(k))));
     let error = made(&stage("(lens: Pixels(210), turn: Whole)"), photos).unwrap_err();
     assert_eq!(error.message, "the photos turn by 46 degrees, and the last does not fit onto the first");
@@ -249,7 +249,7 @@ fn a_turn_that_does_not_close_is_refused_where_a_whole_one_is_asked_for() {
 
 #[test]
 fn a_focal_length_of_less_than_a_turn_is_found_within_some_per_cent() {
-    let camera = Camera::new(210.0, [240, 180]);
+    let camera = CylinderCamera::new(210.0, [240, 180]);
     let photos = set((0..4).map(|k| photo(camera, 0.4 * f64::from(k))));
     let (_, figures) = made(&stage("()"), photos).unwrap();
     assert!((figures["focal_px"] / 210.0 - 1.0).abs() < 0.05, "{}", figures["focal_px"]);

@@ -6,7 +6,7 @@ mod psnr;
 mod sample;
 
 pub use order::in_order;
-pub use plane::Plane;
+pub use plane::GreyPlane;
 pub(crate) use plane::brightness;
 pub use psnr::{PSNR_OF_EQUAL, psnr, psnr_of};
 pub use sample::{cubic, flipped};

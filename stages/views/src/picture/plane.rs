@@ -4,7 +4,7 @@
 ///
 /// Pixel centres lie at whole coordinates.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plane {
+pub struct GreyPlane {
     /// Pixels across.
     pub width: usize,
     /// Pixels down.
@@ -15,16 +15,16 @@ pub struct Plane {
     pub seen: Vec<bool>,
 }
 
-impl Plane {
+impl GreyPlane {
     /// Brightness (ITU-R BT.601) of a photo.
-    pub fn of(photo: &image::RgbImage) -> Plane {
+    pub fn of(photo: &image::RgbImage) -> GreyPlane {
         let levels: Vec<f32> = photo.pixels().map(|p| brightness(p.0.map(f32::from))).collect();
         let (width, height) = (photo.width() as usize, photo.height() as usize);
-        Plane { width, height, seen: vec![true; levels.len()], levels }
+        GreyPlane { width, height, seen: vec![true; levels.len()], levels }
     }
 
     /// Half as wide and high: means of two by two pixels of which all are seen.
-    pub fn half(&self) -> Plane {
+    pub fn half(&self) -> GreyPlane {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let (mut levels, mut seen) = (Vec::with_capacity(width * height), Vec::with_capacity(width * height));
         for y in 0..height {
@@ -37,7 +37,7 @@ impl Plane {
                 seen.push(four.iter().all(|k| self.seen[*k]));
             }
         }
-        Plane { width, height, levels, seen }
+        GreyPlane { width, height, levels, seen }
     }
 
     /// The level at a place between pixels, bilinear; none where one of the four is not seen.
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn levels_between_pixels_are_bilinear_and_none_beyond_the_border() {
-        let plane = Plane::of(&RgbImage::from_fn(4, 3, |x, y| Rgb([(10 * x + 40 * y) as u8; 3])));
+        let plane = GreyPlane::of(&RgbImage::from_fn(4, 3, |x, y| Rgb([(10 * x + 40 * y) as u8; 3])));
         assert!((plane.at(1.5, 0.25).unwrap() - 25.0).abs() < 1e-3);
         assert!((plane.at(3.0, 2.0).unwrap() - 110.0).abs() < 1e-3);
         assert_eq!([plane.at(3.1, 0.0), plane.at(-0.1, 0.0), plane.at(f64::NAN, 0.0)], [None; 3]);
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn what_is_not_seen_gives_no_level() {
-        let mut plane = Plane::of(&RgbImage::new(4, 4));
+        let mut plane = GreyPlane::of(&RgbImage::new(4, 4));
         plane.seen[5] = false;
         assert_eq!(plane.at(0.5, 0.5), None);
         assert_eq!(plane.at(2.5, 2.5), Some(0.0));
