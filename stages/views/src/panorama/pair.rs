@@ -15,7 +15,7 @@ use toile_core::{Context, StageError};
 /// Photos are registered at most this long, px: a tenth of a pixel there is half a pixel of a photo
 /// of 12 megapixels.
 pub(super) const LONGEST_PX: usize = 2048;
-/// Candidates are sought on pictures at most this long, px.
+/// Candidates are sought on pictures at most this long, and half as long as the photos, px.
 const SEARCH_PX: usize = 256;
 /// The window of the mean: its half side is the longer side divided by this.
 const WINDOW: usize = 12;
@@ -33,24 +33,27 @@ const LEAST_LIKENESS: f64 = 0.5;
 pub(super) struct ReducedPhoto {
     /// How often it was halved.
     pub(super) halvings: u32,
+    /// Candidates are sought on a picture at most so long, px.
+    search: usize,
     plane: GreyPlane,
 }
 
 impl ReducedPhoto {
     /// Of a photo, at most `longest` px long.
     pub(super) fn new(photo: &image::RgbImage, longest: usize) -> ReducedPhoto {
+        let search = SEARCH_PX.min(longest.div_ceil(2));
         let (mut plane, mut halvings) = (GreyPlane::of(photo), 0);
         while plane.width.max(plane.height) > longest {
             (plane, halvings) = (plane.half(), halvings + 1);
         }
-        ReducedPhoto { halvings, plane }
+        ReducedPhoto { halvings, search, plane }
     }
 
     /// Its detail on the cylinder, from the finest picture to the coarsest.
     fn unrolled(&self, camera: CylinderCamera) -> UnrolledPhoto {
         let raw = camera.halved(self.halvings).unrolled(&self.plane);
         let mut levels = vec![detail(&raw)];
-        while let Some(last) = levels.last().filter(|l| l.width.max(l.height) > SEARCH_PX) {
+        while let Some(last) = levels.last().filter(|l| l.width.max(l.height) > self.search) {
             levels.push(last.half());
         }
         UnrolledPhoto { raw, levels }
