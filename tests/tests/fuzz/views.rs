@@ -13,6 +13,9 @@ use toile_tests::root;
 
 static REGISTRY: LazyLock<Registry> = LazyLock::new(toile::registry);
 
+/// What a photo has beside its pixels.
+static PHOTO: LazyLock<Photo> = LazyLock::new(testkit::photo);
+
 /// The stages with parameters, at their bounds as well.
 const STAGES: [(&str, &str); 14] = [
     ("Cylinder", "(lens: Degrees(60))"),
@@ -93,7 +96,7 @@ fn made(bytes: &[u8], pictures: &[RgbImage]) -> Result<bool, String> {
     for (k, photo) in photos.chunks_exact(4).enumerate() {
         let own = NAMES[(k * (1 + usize::from(*names) / 3) + usize::from(names % 2) * 3) % NAMES.len()];
         let pixels = spoilt(&pictures[usize::from(photo[0]) % pictures.len()], photo[1], photo[2], photo[3]);
-        let photo = Photo { pixels: Shared::new(pixels), mirrored: photo[2] % 16 == 15, ..testkit::photo() };
+        let photo = Photo { pixels: Shared::new(pixels), mirrored: photo[2] % 16 == 15, ..PHOTO.clone() };
         set.insert(own.to_owned(), Arc::new(photo) as Arc<dyn Artifact>);
     }
     let card = REGISTRY.named(name).next().ok_or("there is no such stage")?;

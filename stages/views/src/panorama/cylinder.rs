@@ -6,7 +6,7 @@ use super::canvas::PanoramaCanvas;
 use super::focal::{ROUGH_PX, degrees, estimated};
 use super::layout::{CameraTurn, PanoramaLayout, laid_out, neighbours};
 use super::lens::Lens;
-use super::pair::{LONGEST_PX, ReducedPhoto};
+use super::pair::{HalvedPhoto, LONGEST_PX};
 use crate::picture::{flipped, in_order};
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
@@ -106,8 +106,8 @@ impl Cylinder {
         cx: &Context,
     ) -> Result<PanoramaLayout, StageError> {
         let given = self.lens.focal(size)?;
-        let reduced = |longest: usize| -> Vec<ReducedPhoto> {
-            pixels.par_iter().map(|p| ReducedPhoto::new(p, longest)).collect()
+        let reduced = |longest: usize| -> Vec<HalvedPhoto> {
+            pixels.par_iter().map(|p| HalvedPhoto::new(p, longest)).collect()
         };
         let focal = match given {
             Some(focal) => focal,

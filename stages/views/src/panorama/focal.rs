@@ -9,7 +9,7 @@
 
 use super::camera::CylinderCamera;
 use super::lens::view_of;
-use super::pair::{ReducedPhoto, register};
+use super::pair::{HalvedPhoto, register};
 use rayon::prelude::*;
 use toile_core::prelude::*;
 
@@ -31,7 +31,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// # Errors
 /// When the run has been stopped.
 pub(super) fn estimated(
-    photos: &[ReducedPhoto],
+    photos: &[HalvedPhoto],
     size: [u32; 2],
     cx: &Context,
 ) -> Result<Option<f64>, StageError> {
@@ -76,7 +76,7 @@ pub(super) fn estimated(
 const UNLIKE: f64 = 1.0;
 
 /// The mean over the pairs of one less their likeness.
-fn misfit(photos: &[ReducedPhoto], camera: CylinderCamera, cx: &Context) -> Result<f64, StageError> {
+fn misfit(photos: &[HalvedPhoto], camera: CylinderCamera, cx: &Context) -> Result<f64, StageError> {
     let pair = |k: usize| match (photos.get(k), photos.get(k + 1)) {
         (Some(a), Some(b)) => Ok(register(a, b, camera, cx)?.map_or(UNLIKE, |f| 1.0 - f.likeness)),
         _ => Ok(UNLIKE),

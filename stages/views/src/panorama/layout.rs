@@ -2,7 +2,7 @@
 
 use super::align::ShiftFit;
 use super::camera::CylinderCamera;
-use super::pair::{ReducedPhoto, register};
+use super::pair::{HalvedPhoto, register};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use toile_core::prelude::*;
@@ -41,7 +41,7 @@ pub(super) struct PanoramaLayout {
 /// # Errors
 /// For the first pair that does not overlap, by `names`; when the run has been stopped.
 pub(super) fn neighbours(
-    photos: &[ReducedPhoto],
+    photos: &[HalvedPhoto],
     names: &[&str],
     camera: CylinderCamera,
     cx: &Context,
@@ -63,7 +63,7 @@ pub(super) fn neighbours(
 /// Where a whole turn is asked for and the last photo does not fit onto the first; when the run has
 /// been stopped.
 pub(super) fn laid_out(
-    photos: &[ReducedPhoto],
+    photos: &[HalvedPhoto],
     mut pairs: Vec<ShiftFit>,
     camera: CylinderCamera,
     turn: CameraTurn,

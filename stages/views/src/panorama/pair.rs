@@ -30,7 +30,7 @@ const LEAST_LIKENESS: f64 = 0.5;
 
 /// A photo as it is registered: halved until it is short enough.
 #[derive(Debug)]
-pub(super) struct ReducedPhoto {
+pub(super) struct HalvedPhoto {
     /// How often it was halved.
     pub(super) halvings: u32,
     /// Candidates are sought on a picture at most so long, px.
@@ -38,15 +38,15 @@ pub(super) struct ReducedPhoto {
     plane: GreyPlane,
 }
 
-impl ReducedPhoto {
+impl HalvedPhoto {
     /// Of a photo, at most `longest` px long.
-    pub(super) fn new(photo: &image::RgbImage, longest: usize) -> ReducedPhoto {
+    pub(super) fn new(photo: &image::RgbImage, longest: usize) -> HalvedPhoto {
         let search = SEARCH_PX.min(longest.div_ceil(2));
         let (mut plane, mut halvings) = (GreyPlane::of(photo), 0);
         while plane.width.max(plane.height) > longest {
             (plane, halvings) = (plane.half(), halvings + 1);
         }
-        ReducedPhoto { halvings, search, plane }
+        HalvedPhoto { halvings, search, plane }
     }
 
     /// Its detail on the cylinder, from the finest picture to the coarsest.
@@ -74,8 +74,8 @@ struct UnrolledPhoto {
 /// # Errors
 /// When the run has been stopped.
 pub(super) fn register(
-    a: &ReducedPhoto,
-    b: &ReducedPhoto,
+    a: &HalvedPhoto,
+    b: &HalvedPhoto,
     camera: CylinderCamera,
     cx: &Context,
 ) -> Result<Option<ShiftFit>, StageError> {
