@@ -17,6 +17,8 @@ fn template(role: Role) -> (&'static str, &'static str) {
     match role {
         Role::Reader => (include_str!("new_stage/reader.txt"), PNG),
         Role::Denoiser => (include_str!("new_stage/denoiser.txt"), IMAGE),
+        Role::Panorama => (include_str!("new_stage/panorama.txt"), IMAGE),
+        Role::ViewInterpolator => (include_str!("new_stage/view_interpolator.txt"), IMAGE),
         Role::Binariser => (include_str!("new_stage/binariser.txt"), IMAGE),
         Role::EdgeDetector => (include_str!("new_stage/edge_detector.txt"), ""),
         Role::Style => (include_str!("new_stage/style.txt"), ""),

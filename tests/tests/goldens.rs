@@ -32,6 +32,20 @@ fn the_other_shipped_pipelines_agree_with_their_goldens() {
 }
 
 #[test]
+fn published_experiments_agree_with_their_goldens() {
+    let out = root().join("out/goldens").display().to_string();
+    let files = fs::read_dir(root().join("pipelines/published")).unwrap().map(|e| e.unwrap().path());
+    let mut files: Vec<_> = files.filter(|p| p.extension().is_some_and(|e| e == "ron")).collect();
+    files.sort();
+    assert!(files.len() >= 3, "{files:?}");
+    for file in files {
+        let answer = toile(&["golden", "check", &file.display().to_string(), "--out", &out]);
+        assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+        assert!(!answer.out.contains("skipped"), "{}", answer.out);
+    }
+}
+
+#[test]
 fn every_measure_of_every_golden_can_fail() {
     for name in toile_tests::PIPELINES {
         let sheet = root().join("pipelines/goldens").join(name.replace(".ron", ".txt"));

@@ -248,8 +248,8 @@ fn what_cannot_be_is_refused_by_name() {
         refused("Photo", "binariser"),
         "error: the crate needs `Photo` for something else; choose another name\n"
     );
-    let there = "reader, denoiser, binariser, edge-detector, style, mesher, smoother, body, fabric, placement, collider, \
-                 stitcher, draper, flattener, texturer, writer";
+    let there = "reader, denoiser, panorama, view-interpolator, binariser, edge-detector, style, mesher, smoother, body, \
+                 fabric, placement, collider, stitcher, draper, flattener, texturer, writer";
     assert_eq!(refused("Fine", "meshr"), "error: there is no role \"meshr\"; did you mean mesher?\n");
     assert_eq!(refused("Fine", "xyz"), format!("error: there is no role \"xyz\"; there are {there}\n"));
     std::fs::create_dir(dir.path().join("fine")).unwrap();

@@ -101,6 +101,7 @@ pub(crate) fn bare() -> Garment {
         pinned: Vec::new(),
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
     }
 }
 

@@ -56,9 +56,9 @@ pub(crate) struct MigrateArgs {
 pub(crate) struct NewStageArgs {
     /// The stage's name, like FineMesher or fine_mesher
     pub(crate) name: String,
-    /// What it is for: reader, denoiser, binariser, edge-detector, style, mesher, smoother, body,
-    /// fabric, placement, collider, stitcher, draper, flattener, texturer or writer [default: what
-    /// NAME ends with, else binariser]
+    /// What it is for: reader, denoiser, panorama, view-interpolator, binariser, edge-detector,
+    /// style, mesher, smoother, body, fabric, placement, collider, stitcher, draper, flattener,
+    /// texturer or writer [default: what NAME ends with, else binariser]
     #[arg(long)]
     pub(crate) role: Option<String>,
     /// The folder in which the crate's own folder is made [default: the current one]

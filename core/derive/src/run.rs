@@ -89,6 +89,7 @@ fn hooks(item: &ItemImpl) -> Vec<TokenStream> {
         ("sizes", given, quote!(::std::option::Option<#size>)),
         ("decisions", known, quote!(::std::vec::Vec<::toile_core::decide::Decision>)),
         ("by_place", nodes, quote!(::toile_core::ByPlace)),
+        ("asks", vec![], quote!(::std::vec::Vec<(&'static str, ::std::string::String)>)),
         ("faults", placed(), errors()),
         ("warnings", placed(), errors()),
         ("improves", vec![], quote!(bool)),

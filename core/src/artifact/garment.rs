@@ -1,7 +1,7 @@
 //! Panels in space, sewn or about to be.
 
 use super::body::{obj_text, vertex_normals};
-use super::{Artifact, ArtifactType, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
+use super::{Artifact, ArtifactType, Fabric, Kind, Measures, Motion, Point2, Point3, SeamKind, Vector3};
 use crate::artifact::store::sound::{alike, ensure, finite, indices, length};
 use std::ops::Range;
 use std::sync::Arc;
@@ -123,6 +123,8 @@ pub struct Garment {
     /// Other places from which it may be sewn, where a placement moved pieces by a rule that may be
     /// wrong; a stage that sews or moves the garment leaves none.
     pub starts: Vec<GarmentStart>,
+    /// How it moved while solvers stepped in time; nothing where none was asked to record it.
+    pub motion: Option<Arc<Motion>>,
 }
 
 impl Garment {
@@ -261,6 +263,9 @@ impl Artifact for Garment {
         for start in &self.starts {
             length("positions of another start", start.positions.len(), n)?;
             finite("vertex of another start", start.positions.iter().map(|p| &p.coords))?;
+        }
+        if let Some(motion) = &self.motion {
+            motion.check()?;
         }
         indices("a weld", n, self.weld.iter())?;
         indices("a pin", n, self.pinned.iter())?;

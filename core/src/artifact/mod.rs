@@ -20,6 +20,7 @@ mod locate;
 mod mask;
 mod measures;
 mod model;
+mod motion;
 mod outline;
 mod panel;
 mod pattern;
@@ -44,6 +45,7 @@ pub use locate::{Located, Locator};
 pub use mask::Mask;
 pub use measures::{Measure, Measures};
 pub use model::{Material, Mesh, Model, Sheen, Texture, Variant};
+pub use motion::Motion;
 pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
 pub use pattern::{

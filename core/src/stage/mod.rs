@@ -54,6 +54,13 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
         ByPlace::default()
     }
 
+    /// Values of parameters that it asks of the stages which feed it, near and far, such as that
+    /// solvers record frames: a stage that has a parameter of that name takes the value where the
+    /// file leaves it out. The loader asks for them together with [`Stage::by_place`].
+    fn asks(&self) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
     /// What is wrong with its parameters and files, as far as can be known before anything runs:
     /// all of it, each at its own parameter and element ([`StageError::at`],
     /// [`StageError::within`]). It is asked before every run and by `toile validate`, so it must be

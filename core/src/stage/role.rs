@@ -7,6 +7,10 @@ pub enum Role {
     Reader,
     /// Removes noise from photos.
     Denoiser,
+    /// Overlapping photos of a camera that turns to one picture.
+    Panorama,
+    /// Photos from several places to the view from another place.
+    ViewInterpolator,
     /// Photo to mask.
     Binariser,
     /// Photo and mask to outline.
@@ -39,9 +43,11 @@ pub enum Role {
 
 impl Role {
     /// Every role, in the order of a pipeline.
-    pub const ALL: [Role; 16] = [
+    pub const ALL: [Role; 18] = [
         Role::Reader,
         Role::Denoiser,
+        Role::Panorama,
+        Role::ViewInterpolator,
         Role::Binariser,
         Role::EdgeDetector,
         Role::Style,
@@ -68,6 +74,8 @@ impl Role {
         match self {
             Role::Reader => "reader",
             Role::Denoiser => "denoiser",
+            Role::Panorama => "panorama",
+            Role::ViewInterpolator => "view interpolator",
             Role::Binariser => "binariser",
             Role::EdgeDetector => "edge detector",
             Role::Style => "style",

@@ -191,8 +191,25 @@ pub fn garment() -> Garment {
         pinned: Vec::new(),
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
         positions,
     }
+}
+
+/// The same after it has moved, in three frames: it came down by a centimetre each.
+pub fn moved_garment() -> Garment {
+    let garment = garment();
+    let at = |k: usize| {
+        garment.positions.iter().map(move |p| [p.x as f32, (p.y + 0.01 * (2 - k) as f64) as f32, p.z as f32])
+    };
+    let motion = Motion {
+        every: 0.04,
+        end: 0.1,
+        triangles: garment.triangles.clone(),
+        vertices: garment.positions.len(),
+        positions: (0..3).flat_map(at).collect(),
+    };
+    Garment { motion: Some(Arc::new(motion)), ..garment }
 }
 
 /// The garment round the body like a tube, its sides sewn, its upper rim held.
@@ -229,6 +246,7 @@ pub fn no_garment() -> Garment {
         pinned: vec![],
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
     }
 }
 

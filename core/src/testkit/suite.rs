@@ -163,7 +163,7 @@ fn own() -> &'static [Own] {
             (Fabric::KIND, || Arc::new(dress::fabric())),
             (SewingPlan::KIND, || Arc::new(dress::plan())),
             (Pattern::KIND, || Arc::new(dress::pattern())),
-            (Garment::KIND, || Arc::new(dress::garment())),
+            (Garment::KIND, || Arc::new(dress::moved_garment())),
             (Collider::KIND, || Arc::new(capsules::collider())),
             (Phases::KIND, || Arc::new(dress::phases())),
             (Model::KIND, || Arc::new(dress::model())),

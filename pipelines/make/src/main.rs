@@ -1,5 +1,6 @@
 //! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a
-//! prepared scene, a panorama, and sewing patterns of a shirt, trousers, a dress and a one-piece.
+//! prepared scene, a panorama, views of one scene from many places, and sewing patterns of a shirt,
+//! trousers, a dress and a one-piece.
 //!
 //! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
 //! run. Another folder may be given as the first argument, and as the second a factor for the
@@ -17,6 +18,7 @@ mod print;
 mod render;
 mod scene;
 mod truth;
+mod views;
 
 use cloth::{RimFinish, Structure};
 use colour::srgb;
@@ -43,6 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     panorama::write(&folder.join("panorama"))?;
     pattern::write(&folder.join("pattern"))?;
+    views::write(&folder.join("views"))?;
     scene::write(&folder.join("scene"))
 }
 
@@ -265,6 +268,16 @@ mod tests {
     fn the_committed_panorama_is_that_of_this_program() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples/panorama/studio.jpg");
         assert!(std::fs::read(file).unwrap() == panorama::jpeg().unwrap(), "run the program");
+    }
+
+    #[test]
+    fn the_committed_views_are_those_of_this_program() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples/views");
+        for files in [views::turn(), views::pair(), views::grid()] {
+            for (path, bytes) in files.unwrap() {
+                assert!(std::fs::read(folder.join(&path)).unwrap() == bytes, "{path}: run the program");
+            }
+        }
     }
 
     #[test]

@@ -39,11 +39,16 @@ fn picture() -> RgbImage {
     })
 }
 
-/// The light that comes from a direction.
-fn seen(d: [f64; 3]) -> LinearColour {
+/// The wall that a direction meets, by the axis that it stands across, and where.
+pub(crate) fn met(d: [f64; 3]) -> (usize, [f64; 3]) {
     let way = |k: usize| if d[k] > 0.0 { ROOM[k][1] / d[k] } else { ROOM[k][0] / d[k].min(-1e-9) };
     let wall = (0..3).min_by(|a, b| way(*a).total_cmp(&way(*b))).unwrap_or(0);
-    let p = d.map(|v| v * way(wall));
+    (wall, d.map(|v| v * way(wall)))
+}
+
+/// The light that comes from a direction.
+pub(crate) fn seen(d: [f64; 3]) -> LinearColour {
+    let (wall, p) = met(d);
     let lit = 0.72 + 0.28 * smoothstep(6.0, 0.5, distance(p, [3.6, 1.2, 1.5]));
     match (wall, d[wall] > 0.0) {
         (1, true) => scale(srgb(226, 222, 214), lit),

@@ -50,8 +50,8 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// What is known of `p` from the closest point and the unit pseudo-normal of the feature that it
-    /// lies on, which is the inside of a triangle or not.
+    /// What is known of `p` from the closest point and the unit pseudo-normal of the feature that
+    /// it lies on, which is the inside of a triangle or not.
     #[must_use]
     pub fn signed(p: &Vec3, point: Vec3, pseudo: Vec3, in_face: bool) -> Self {
         let gap = p - point;

@@ -16,6 +16,7 @@ mod dice;
 mod plugin;
 mod spoil;
 mod texts;
+mod views;
 
 use dice::Dice;
 use std::fs::File;

@@ -7,6 +7,7 @@ mod falls;
 mod flat;
 mod outputs;
 mod photos;
+mod published;
 mod swapped;
 mod turntable;
 mod vest;

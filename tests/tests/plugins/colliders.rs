@@ -61,6 +61,7 @@ pub(crate) fn garment() -> Garment {
         pinned: vec![],
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
     }
 }
 

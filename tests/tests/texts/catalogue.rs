@@ -121,7 +121,8 @@ fn validator() -> (boon::Schemas, boon::SchemaIndex) {
 fn shipped_pipelines_follow_the_schema() {
     let (schemas, index) = validator();
     let mut seen = 0;
-    for entry in std::fs::read_dir(root().join("pipelines")).unwrap() {
+    let folders = ["pipelines", "pipelines/published"].map(|f| std::fs::read_dir(root().join(f)).unwrap());
+    for entry in folders.into_iter().flatten() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "ron") {
             let text = std::fs::read_to_string(&path).unwrap();

@@ -46,7 +46,7 @@ const OWN_WORDS: [(&str, &str, &str); 14] = [
 ];
 
 /// The crates that hold the built-in stages.
-const CRATES: [&str; 5] = ["image", "pattern", "body", "drape", "output"];
+const CRATES: [&str; 6] = ["image", "views", "pattern", "body", "drape", "output"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {

@@ -45,7 +45,9 @@ pub(super) fn terms(role: &str) -> &'static [Term] {
     use Term::{Constant, Of, Side, Solve, Steps};
     match Role::named(role) {
         Some(Role::Reader) => &[Of(Decoded), Of(Pixels), Of(Bytes), Of(Triangles), Constant],
-        Some(Role::Denoiser | Role::Binariser) => &[Of(Pixels), Constant],
+        Some(Role::Denoiser | Role::Binariser | Role::Panorama | Role::ViewInterpolator) => {
+            &[Of(Pixels), Constant]
+        }
         Some(Role::EdgeDetector) => &[Of(Pixels), Side(Pixels), Constant],
         Some(Role::Style) => &[Of(Pieces), Constant],
         Some(Role::Mesher | Role::Smoother | Role::Placement) => &[Of(Triangles), Of(Points), Constant],

@@ -41,6 +41,7 @@ fn garment(rest: Vec<Point2>, positions: Vec<Point3>, triangles: Vec<[u32; 3]>) 
         pinned: Vec::new(),
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
     }
 }
 

@@ -478,7 +478,9 @@ fn unknown(name: &str, near: Option<&str>, known: Option<String>) -> String {
 /// A stage of that role in words: `mesher`, `body stage`.
 fn noun(role: Role) -> String {
     match role {
-        Role::Style | Role::Body | Role::Fabric | Role::Placement => format!("{} stage", role.as_str()),
+        Role::Panorama | Role::Style | Role::Body | Role::Fabric | Role::Placement => {
+            format!("{} stage", role.as_str())
+        }
         _ => role.as_str().to_owned(),
     }
 }

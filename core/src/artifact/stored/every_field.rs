@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::needless_update)]
 
 use crate::artifact::stored::tests::{
-    body, fabric, figures, garment, model, outline, panel, phases, photo, plan,
+    body, fabric, figures, garment, model, motion, outline, panel, phases, photo, plan,
 };
 use crate::artifact::*;
 use crate::cost::Used;
@@ -176,6 +176,7 @@ fn of_garments() {
             pinned: vec![],
             status: SolveStatus::default(),
             starts: vec![GarmentStart { told: "as drawn".into(), positions: garment().positions }],
+            motion: Some(Arc::new(motion())),
         }
     );
     let panels = changed!(
@@ -211,6 +212,11 @@ fn of_garments() {
     let of_kind = |kind| GarmentSeam { kind, ..garment().seams[0].clone() };
     let seams = seams.into_iter().chain(kinds.map(of_kind));
     others.extend(seams.map(|seam| Garment { seams: vec![seam], ..garment() }));
+    let motions = changed!(
+        motion(),
+        Motion { every: 0.05, end: 0.06, triangles: vec![], vertices: 2, positions: vec![[0.0; 3]; 3] }
+    );
+    others.extend(motions.into_iter().map(|m| Garment { motion: Some(Arc::new(m)), ..garment() }));
     let states = changed!(
         base.status.clone(),
         SolveStatus {

@@ -4,8 +4,8 @@ use super::flat::{rgb, value, word};
 use super::plan::{kind_fields, kind_of};
 use super::{Reader, Record, Stored};
 use crate::artifact::{
-    Body, Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, Material, Mesh, Model, Point3, SeamState,
-    Sheen, SolveStatus, Texture, Variant,
+    Body, Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, Material, Mesh, Model, Motion, Point3,
+    SeamState, Sheen, SolveStatus, Texture, Variant,
 };
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -60,6 +60,8 @@ impl Garment {
                     .iter()
                     .map(|s| Record::new().text("told", &s.told).list("positions", &s.positions)),
             )
+            // Garments that nobody recorded have the bytes that they had before there were motions.
+            .maybe("motion", self.motion.as_deref().map(motion_fields))
     }
 }
 
@@ -76,8 +78,28 @@ impl Stored for Garment {
             pinned: r.list("pinned")?,
             status: r.maybe("status")?.map(|s| status_of(&s)).transpose()?.unwrap_or_default(),
             starts: starts_of(r)?,
+            motion: r.maybe("motion")?.map(|m| motion_of(&m)).transpose()?.map(Arc::new),
         })
     }
+}
+
+fn motion_fields(m: &Motion) -> Record<'_> {
+    Record::new()
+        .number("every", m.every)
+        .number("end", m.end)
+        .list("triangles", &m.triangles)
+        .count("vertices", m.vertices)
+        .list("positions", &m.positions)
+}
+
+fn motion_of(r: &Reader<'_>) -> Result<Motion, String> {
+    Ok(Motion {
+        every: r.one("every")?,
+        end: r.one("end")?,
+        triangles: r.list("triangles")?,
+        vertices: r.count("vertices")?,
+        positions: r.list("positions")?,
+    })
 }
 
 /// Garments of plugins built before there were other starts have none.

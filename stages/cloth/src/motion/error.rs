@@ -85,12 +85,4 @@ impl MotionError {
             _ => None,
         }
     }
-
-    /// The same error with the positions that `change` makes of its own.
-    pub(super) fn with_positions(mut self, change: impl FnOnce(Vec<Vec3>) -> Vec<Vec3>) -> Self {
-        if let Self::SeamNotClosed { positions, .. } | Self::Timeout { positions, .. } = &mut self {
-            *positions = change(std::mem::take(positions));
-        }
-        self
-    }
 }

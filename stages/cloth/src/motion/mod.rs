@@ -13,6 +13,7 @@ mod fall;
 mod method;
 mod moving;
 mod near;
+mod recorder;
 mod seams;
 mod through;
 
@@ -22,6 +23,7 @@ mod tests;
 pub use contact::Response;
 pub use error::MotionError;
 pub use method::Method;
+pub use recorder::Recorder;
 pub use seams::SeamForce;
 pub use through::Through;
 
@@ -30,6 +32,7 @@ use crate::energy::{Air, Models};
 use crate::error::ClothError;
 use crate::scene::Scene;
 use crate::statics::drive::solve::Collider;
+use crate::statics::levels::coarsen::Coarser;
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::report::start::{check, probably_reversed};
 use crate::stopper::Stopper;
@@ -227,11 +230,12 @@ impl Motion {
         stopper: &Stopper,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
-        self.run_around(scene, collider, &[], stopper, progress)
+        self.run_around(scene, collider, &[], stopper, progress, None)
     }
 
-    /// The same; where cloth is sewn through cloth, it is sewn on the first of the solids `around`,
-    /// which are thinner than the collider, and pushed out by each next one.
+    /// The same, where `recorder` takes the frames; [`MotionError::Stopped`] where it is full.
+    /// Where cloth is sewn through cloth, it is sewn on the first of the solids `around`, which are
+    /// thinner than the collider, and pushed out by each next one.
     ///
     /// # Errors
     /// Every [`MotionError`].
@@ -242,6 +246,7 @@ impl Motion {
         around: &[&dyn CollisionSurface],
         stopper: &Stopper,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        recorder: Option<&mut Recorder>,
     ) -> Result<Moved, MotionError> {
         scene.check()?;
         if self.method.takes_one_fabric() {
@@ -256,13 +261,14 @@ impl Motion {
             scene,
             collider,
             around,
-            scene_vertex: (0..scene.rest.len() as u32).collect(),
+            coarser: Vec::new(),
             points: pieces.point.clone(),
             pieces,
             falls,
             clock,
             stopper,
             progress,
+            recorder,
         };
         match self.until {
             Until::Sewn { longest } => {
@@ -293,8 +299,8 @@ struct MotionRun<'a> {
     around: &'a [&'a dyn CollisionSurface],
     /// The mesh that moves.
     pieces: Pieces,
-    /// The vertex of the scene that each vertex of the mesh is.
-    scene_vertex: Vec<u32>,
+    /// From the scene's mesh to the one that moves, how each was made coarser.
+    coarser: Vec<Coarser>,
     /// The sewn point of each vertex of the scene.
     points: Vec<u32>,
     falls: Option<Falls>,
@@ -302,6 +308,7 @@ struct MotionRun<'a> {
     /// Stops where the caller does, and when the time limit is reached.
     stopper: Stopper,
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    recorder: Option<&'a mut Recorder>,
 }
 
 impl<'a> MotionRun<'a> {
@@ -404,6 +411,7 @@ impl<'a> MotionRun<'a> {
         moving: &mut Moving,
         end: f64,
     ) -> Result<(), MotionError> {
+        let before = self.recorder.is_some().then(|| (moving.progress.time, moving.state.x.clone()));
         let stepped = moving.step(self.settings, solid, end);
         if let Err(MotionError::Cloth(ClothError::Stopped)) = stepped {
             return Err(self.stopped(moving));
@@ -412,6 +420,7 @@ impl<'a> MotionRun<'a> {
         if let Some(fallen) = self.falls.as_ref().and_then(|f| f.look(self.scene, moving)) {
             return Err(MotionError::FallsPast(Box::new(fallen)));
         }
+        self.record(before, moving)?;
         if (self.progress)(&moving.progress).is_break() {
             return Err(MotionError::Stopped);
         }
@@ -419,6 +428,20 @@ impl<'a> MotionRun<'a> {
             return Err(self.stopped(moving));
         }
         Ok(())
+    }
+
+    /// Hands the recorder the step that was made, where a frame is due.
+    fn record(&mut self, before: Option<(f64, Vec<Vec3>)>, moving: &Moving) -> Result<(), MotionError> {
+        let (Some(recorder), Some((time, x))) = (&mut self.recorder, before) else { return Ok(()) };
+        let now = moving.progress.time;
+        if !recorder.is_due(now) {
+            return Ok(());
+        }
+        let (from, to) = (self.vertices(moving, &x), self.vertices(moving, &moving.state.x));
+        match recorder.pass((time, &from), (now, &to)) {
+            true => Ok(()),
+            false => Err(MotionError::Stopped),
+        }
     }
 
     /// Why the caller or the time limit ends a motion.
@@ -436,10 +459,10 @@ impl<'a> MotionRun<'a> {
     fn closed(&self, moving: &Moving) -> Result<(), MotionError> {
         match moving.seams.widest(&moving.state.x) {
             Some((pair, gap)) => {
-                let vertex = self.scene_vertex.get(pair[0] as usize).copied().unwrap_or(0);
+                let vertex = self.coarser.iter().rev().fold(pair[0], |v, c| c.kept[v as usize]);
                 let seam = seams::name_of(self.scene, &self.points, vertex);
                 let reversed = probably_reversed(self.scene, &self.scene.positions);
-                let (time, positions) = (moving.progress.time, moving.state.x.clone());
+                let (time, positions) = (moving.progress.time, self.vertices(moving, &moving.state.x));
                 Err(MotionError::SeamNotClosed { seam, gap, time, reversed, positions })
             }
             None => Ok(()),
@@ -461,8 +484,9 @@ impl<'a> MotionRun<'a> {
         }
     }
 
-    /// The values of the mesh's vertices from those of the cloth that moves.
+    /// Values of the scene's vertices from those of the cloth that moves.
     fn vertices(&self, moving: &Moving, values: &[Vec3]) -> Vec<Vec3> {
-        if moving.is_joined { self.pieces.spread(values) } else { values.to_vec() }
+        let values = if moving.is_joined { self.pieces.spread(values) } else { values.to_vec() };
+        self.coarser.iter().rev().fold(values, |values, c| c.prolong(&values))
     }
 }

@@ -63,16 +63,6 @@ impl Meshes {
     fn coarsest(&self) -> usize {
         self.coarser.len()
     }
-
-    /// An error of mesh `k` with the positions of the scene's vertices.
-    fn prolonged_in(&self, error: MotionError, k: usize) -> MotionError {
-        error.with_positions(|x| self.coarser[..k].iter().rev().fold(x, |v, c| c.prolong(&v)))
-    }
-
-    /// The scene's vertex that is a vertex of mesh `k`.
-    fn scene_vertex(&self, k: usize, v: u32) -> u32 {
-        self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize])
-    }
 }
 
 impl MotionRun<'_> {
@@ -83,7 +73,7 @@ impl MotionRun<'_> {
         loop {
             let meshes = Meshes::new(self, coarsest)?;
             let k = meshes.coarsest();
-            let moving = self.sewn_on_mesh(&meshes, longest).map_err(|e| meshes.prolonged_in(e, k))?;
+            let moving = self.sewn_on_mesh(&meshes, longest)?;
             let finer = k.checked_sub(1).map(|k| meshes.pieces[k].points);
             match finer.filter(|_| moving.is_pierced(self.collider)) {
                 Some(points) => coarsest = points,
@@ -120,14 +110,14 @@ impl MotionRun<'_> {
             moving = moving.goes_on(self, State { time, ..State::at_rest(x) })?;
             moving.uncross();
             let body = self.collider;
-            self.smoothed(&mut moving, body).map_err(|e| meshes.prolonged_in(e, k))?;
+            self.smoothed(&mut moving, body)?;
         }
         Ok(moving)
     }
 
     fn take_mesh(&mut self, meshes: &Meshes, k: usize) {
         self.pieces = meshes.pieces[k].clone();
-        self.scene_vertex = (0..self.pieces.rest.len() as u32).map(|v| meshes.scene_vertex(k, v)).collect();
+        self.coarser = meshes.coarser[..k].to_vec();
     }
 
     /// Lets the sewn cloth move a little without weight and friction, while a solid pushes it out.

@@ -1,12 +1,12 @@
 //! The body's skin as a collider answers for it: contacts of many vertices, and paths that enter.
 //!
-//! Distances and paths are those of a [`Skin`]; most vertices never reach its tree: a
+//! Distances and paths are those of a [`BodySkin`]; most vertices never reach its tree: a
 //! lattice of distances sorts them out. O(log n) a query. The mesh must have passed
 //! [`check_body`](super::check_body).
 
 use super::asked_distances::Distances;
 use super::points::{self, coords};
-use super::search::Skin;
+use super::search::BodySkin;
 use rayon::prelude::*;
 use toile_core::artifact::{Body, BodyContact, Point3, Surface};
 use toile_core::{Context, StageError};
@@ -23,7 +23,7 @@ pub struct BodyIndex<S> {
     lattice: DistanceLattice,
 }
 
-impl<S: Skin> BodyIndex<S> {
+impl<S: BodySkin> BodyIndex<S> {
     /// The index of a body that has passed its checks.
     pub fn new(body: &Body, distances: Distances, cx: &Context) -> Result<Self, StageError> {
         let vertices = coords(&body.positions);

@@ -36,8 +36,8 @@ pub enum Volume {
 /// that stiffness instead. Both are what `SpringStitcher` and `SpringDraper` do; the other drapers
 /// refuse them.
 ///
-/// `ParryCollider` gives the same contacts by another library. Behind another `BvhCollider`, such as one of the same body in another pose, it takes that one's
-/// parameters where it is given none.
+/// `ParryCollider` gives the same contacts by another library. Behind another `BvhCollider`, such
+/// as one of the same body in another pose, it takes that one's parameters where it is given none.
 #[stage(
     role = Collider,
     source = "Gottschalk et al. 1996; Klosowski et al. 1998; Baerentzen & Aanaes 2005",

@@ -2,8 +2,8 @@
 
 use super::asked_distances::{self, Distances};
 use super::body_check::check_body;
-use super::scheme::Scheme;
-use super::search::{ClothSearch, Skin};
+use super::scheme::KernelScheme;
+use super::search::{BodySkin, ClothSearch};
 use std::sync::Arc;
 use toile_body::bridged;
 use toile_core::decide::Decision;
@@ -44,8 +44,8 @@ pub(crate) struct ContactSettings {
 const SHARE: f64 = 0.7;
 
 impl ContactSettings {
-    /// Refuses a body that is none, warns of a collider that keeps nothing apart, and gives the body
-    /// as the cloth meets it, where that is another one.
+    /// Refuses a body that is none, warns of a collider that keeps nothing apart, and gives the
+    /// body as the cloth meets it, where that is another one.
     pub(crate) fn prepared(&self, body: Option<&Body>, cx: &Context) -> Result<Option<Body>, StageError> {
         body.map(check_body).transpose()?;
         if body.is_none() && !self.self_collision {
@@ -62,14 +62,15 @@ impl ContactSettings {
         Ok(found)
     }
 
-    /// The service of a skin and a search with these settings, for a body that has passed its checks.
+    /// The service of a skin and a search with these settings, for a body that has passed its
+    /// checks.
     pub(crate) fn scheme<S, C>(
         &self,
         body: Option<&Body>,
         cx: &Context,
     ) -> Result<Arc<dyn Collide>, StageError>
     where
-        S: Skin + 'static,
+        S: BodySkin + 'static,
         C: ClothSearch + 'static,
     {
         let card = ColliderCard {
@@ -79,7 +80,7 @@ impl ContactSettings {
             self_collision: self.self_collision,
             penalty: self.penalty,
         };
-        Ok(Arc::new(Scheme::<S, C>::new(card, body, self.distances, cx)?))
+        Ok(Arc::new(KernelScheme::<S, C>::new(card, body, self.distances, cx)?))
     }
 
     /// What is left out for the scene.

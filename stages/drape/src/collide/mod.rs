@@ -24,7 +24,7 @@ pub use body_check::check_body;
 pub use body_index::BodyIndex;
 pub use bvh_collider::{BvhCollider, Volume};
 pub use parry_collider::ParryCollider;
-pub use scheme::{BvhScheme, Scheme};
+pub use scheme::{BvhScheme, KernelScheme};
 
 use toile_core::Registry;
 use toile_core::artifact::{Body, Point3};

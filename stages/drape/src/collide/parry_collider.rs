@@ -15,8 +15,8 @@ use toile_core::{ByPlace, Node};
 /// against each other; `BvhCollider` takes less time. The body must be a closed mesh that faces
 /// outwards. Without a body only cloth against itself is looked for.
 ///
-/// Friction, restitution and penalty are applied by the solver, as with `BvhCollider`. Behind another
-/// `ParryCollider` it takes that one's parameters where it is given none.
+/// Friction, restitution and penalty are applied by the solver, as with `BvhCollider`. Behind
+/// another `ParryCollider` it takes that one's parameters where it is given none.
 #[stage(
     role = Collider,
     source = "parry3d 0.31 (Dimforge); Baerentzen & Aanaes 2005",

@@ -3,7 +3,7 @@
 use super::asked_distances::Distances;
 use super::body_index::BodyIndex;
 use super::points::coords;
-use super::search::{ClothSearch, Skin};
+use super::search::{BodySkin, ClothSearch};
 use super::self_collision::{SearchedCloth, search, usable};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -12,15 +12,16 @@ use toile_core::{Context, StageError};
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::signed_distance::SignedDistance;
 
-/// Searches kept for the next query: one per garment is enough, a few let garments run side by side.
+/// Searches kept for the next query: one per garment is enough, a few let garments run side by
+/// side.
 const POOL: usize = 4;
 
 /// Collisions by hierarchies of one kind of volume.
-pub type BvhScheme<V> = Scheme<SignedDistance<V>, ClothTree<V>>;
+pub type BvhScheme<V> = KernelScheme<SignedDistance<V>, ClothTree<V>>;
 
 /// Collisions by one kind of skin and one kind of search.
 #[derive(Debug)]
-pub struct Scheme<S, C> {
+pub struct KernelScheme<S, C> {
     card: ColliderCard,
     body: Option<BodyIndex<S>>,
     landmarks: BTreeMap<String, Point3>,
@@ -37,7 +38,7 @@ struct KeptSearch<C> {
     search: C,
 }
 
-impl<S: Skin, C: ClothSearch> Scheme<S, C> {
+impl<S: BodySkin, C: ClothSearch> KernelScheme<S, C> {
     /// The scheme for a body that has passed its checks, or for cloth alone.
     pub fn new(
         card: ColliderCard,
@@ -47,11 +48,11 @@ impl<S: Skin, C: ClothSearch> Scheme<S, C> {
     ) -> Result<Self, StageError> {
         let landmarks = body.map(|b| b.landmarks.clone()).unwrap_or_default();
         let body = body.map(|b| BodyIndex::new(b, distances, cx)).transpose()?;
-        Ok(Scheme { card, body, landmarks, pool: Mutex::default() })
+        Ok(KernelScheme { card, body, landmarks, pool: Mutex::default() })
     }
 
-    /// What `f` makes of the cloth, with a search that was kept for the same triangles or is made for
-    /// it.
+    /// What `f` makes of the cloth, with a search that was kept for the same triangles or is made
+    /// for it.
     fn with_cloth<T>(
         &self,
         positions: &[Point3],
@@ -78,7 +79,7 @@ impl<S: Skin, C: ClothSearch> Scheme<S, C> {
     }
 }
 
-impl<S: Skin, C: ClothSearch> Collide for Scheme<S, C> {
+impl<S: BodySkin, C: ClothSearch> Collide for KernelScheme<S, C> {
     fn card(&self) -> ColliderCard {
         self.card
     }

@@ -12,7 +12,7 @@ use toile_geometry::signed_distance::{Nearest, PathEntry, SignedDistance};
 use toile_geometry::volume::BoundingVolume;
 
 /// A closed mesh that faces outwards.
-pub trait Skin: Debug + Send + Sync {
+pub trait BodySkin: Debug + Send + Sync {
     /// That of vertices and triangles; these name vertices that there are and are finite.
     fn over(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self;
 
@@ -48,7 +48,7 @@ pub trait ClothSearch: Debug + Send + Sync {
     fn crossings(&self, x: &[Vec3]) -> Vec<[u32; 2]>;
 }
 
-impl<V: BoundingVolume> Skin for SignedDistance<V> {
+impl<V: BoundingVolume> BodySkin for SignedDistance<V> {
     fn over(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         SignedDistance::new(vertices, triangles)
     }

@@ -4,6 +4,7 @@ mod again;
 mod asleep;
 pub(crate) mod by_place;
 mod central_differences;
+mod frames;
 mod implicit_euler;
 mod layers;
 mod mixed_precision;

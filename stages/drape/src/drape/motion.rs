@@ -2,6 +2,7 @@
 //! and back.
 
 use super::again::thin_of;
+use super::frames;
 use crate::engine::{
     self, MessageContext, Motions, SceneSetting, SchemeSurface, carries_out, scene_of, weld_seams,
 };
@@ -57,6 +58,9 @@ pub struct InTime {
     /// Wall time after which it gives up. A run that meets it is not repeatable.
     #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
     pub time_limit: f64,
+    /// Time between two frames that are recorded, none at 0; `Frames` behind it asks for its own.
+    #[param(default = 0.0, min = 0.0, max = 100.0, unit = "s")]
+    pub frames: f64,
 }
 
 /// How the stages that step in time sew pieces that start far apart.
@@ -154,8 +158,17 @@ pub(crate) fn moved(
     let motion = Motion { until, response, ..course.motion };
     let cancel = cx.cancel().clone();
     let stopper = Stopper::when(move || cancel.is_cancelled());
-    let moved = sewn_twice(&motion, &scene, engine_collider, collider, &stopper, time, cx);
+    let begun = frames::recorder(time.frames, garment, cx)?;
+    let mut recorder = None;
+    let mut tell = |p: &Progress| tell(p, time, cx);
+    let moved = sewn_twice(collider.filter(|_| motion.through.is_some()), cx, |around| {
+        recorder = begun.clone();
+        motion.run_around(&scene, engine_collider, around, &stopper, &mut tell, recorder.as_mut())
+    });
     cx.check()?;
+    if recorder.as_ref().is_some_and(|r| r.is_full) {
+        return Err(frames::full(time.frames));
+    }
     if let Some(positions) = moved.as_ref().err().and_then(MotionError::so_far) {
         cx.so_far(at(garment, positions));
     }
@@ -165,32 +178,29 @@ pub(crate) fn moved(
         cx.warn(unrest(&moved, time.speed));
     }
     cx.figure("motion_time", moved.progress.time, "s");
-    Ok(finish(garment, &moved))
+    let mut finished = finish(garment, &moved);
+    finished.motion = frames::after(recorder, garment, &moved);
+    Ok(finished)
 }
 
-/// The motion; where it sews through and the body keeps seams open, once more around a thin figure.
+/// The motion; where the body keeps seams open that could close on a thin figure of it, once more
+/// around that.
 fn sewn_twice(
-    motion: &Motion,
-    scene: &Scene,
-    engine_collider: Option<EngineCollider<'_>>,
     collider: Option<&Collider>,
-    stopper: &Stopper,
-    time: &InTime,
     cx: &Context,
+    mut run: impl FnMut(&[&dyn CollisionSurface]) -> Result<Moved, MotionError>,
 ) -> Result<Moved, MotionError> {
-    let first = motion.run_until_stopped(scene, engine_collider, stopper, &mut |p| tell(p, time, cx));
+    let first = run(&[]);
     let is_open = matches!(first, Err(MotionError::SeamNotClosed { .. }));
-    let (true, true, Some(collider)) = (is_open, motion.through.is_some(), collider) else { return first };
-    let thin = thin_of(collider);
-    let around: Vec<&dyn CollisionSurface> = thin.iter().map(|f| f as &dyn CollisionSurface).collect();
-    if around.is_empty() {
+    let thin = collider.filter(|_| is_open).map(thin_of).unwrap_or_default();
+    if thin.is_empty() {
         return first;
     }
     cx.note(
         "the body keeps seams open: the garment is sewn again around a thin figure, which grows to the body",
     );
-    let second = motion.run_around(scene, engine_collider, &around, stopper, &mut |p| tell(p, time, cx));
-    if second.is_ok() { second } else { first }
+    let around: Vec<&dyn CollisionSurface> = thin.iter().map(|f| f as &dyn CollisionSurface).collect();
+    run(&around).or(first)
 }
 
 /// The garment with its vertices at other positions.

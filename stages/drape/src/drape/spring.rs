@@ -67,6 +67,9 @@ pub struct SpringDraper {
     /// How seams close that are open yet.
     #[param(flatten)]
     pub sewn: SewThrough,
+    /// Time between two frames that are recorded, none at 0; `Frames` behind it asks for its own.
+    #[param(default = 0.0, min = 0.0, max = 100.0, unit = "s")]
+    pub frames: f64,
 }
 
 #[stage]
@@ -86,6 +89,7 @@ impl SpringDraper {
             speed: self.speed,
             longest: self.time_limit,
             sewn: self.sewn,
+            frames: self.frames,
             ..InTime::default()
         };
         let motion = Motion {

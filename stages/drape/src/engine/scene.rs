@@ -169,6 +169,7 @@ pub fn garment_of(scene: &Scene) -> Garment {
         pinned: scene.pinned.clone(),
         status: SolveStatus { held: held_of(&scene.held), ..SolveStatus::default() },
         starts: Vec::new(),
+        motion: None,
     }
 }
 

@@ -61,6 +61,9 @@ pub struct SpringStitcher {
     /// How seams close.
     #[param(flatten)]
     pub sewn: SewThrough,
+    /// Time between two frames that are recorded, none at 0; `Frames` behind it asks for its own.
+    #[param(default = 0.0, min = 0.0, max = 100.0, unit = "s")]
+    pub frames: f64,
 }
 
 /// What brings the two sides of a seam together.
@@ -90,6 +93,7 @@ impl SpringStitcher {
             longest: self.time_limit,
             join_gap: self.seam_distance,
             sewn: self.sewn,
+            frames: self.frames,
             ..InTime::default()
         };
         let motion = Motion {

@@ -1,9 +1,9 @@
-//! Vertices and edges of triangles as they meet: each belongs to one triangle, so that every pair of
-//! them is found once (representative triangles: Curtis, Tamstorf, Manocha 2008).
+//! Vertices and edges of triangles as they meet: each belongs to one triangle, so that every pair
+//! of them is found once (representative triangles: Curtis, Tamstorf, Manocha 2008).
 //!
-//! Which triangles are near each other is found elsewhere: by [`ClothTree`](super::ClothTree), or by
-//! another search, which hands its pairs to [`Features::pairs_among`]. O(n log n) to make, O(1) a
-//! pair of triangles.
+//! Which triangles are near each other is found elsewhere: by [`ClothTree`](super::ClothTree), or
+//! by another search, which hands its pairs to [`Features::pairs_among`]. O(n log n) to make, O(1)
+//! a pair of triangles.
 
 use crate::Vec3;
 use crate::ccd::approach;
@@ -57,8 +57,8 @@ impl Features {
         pairs
     }
 
-    /// Whether an edge of one triangle pierces the inside of the other at `x`, by exact signs. Nodes
-    /// that are sewn to each other count as one.
+    /// Whether an edge of one triangle pierces the inside of the other at `x`, by exact signs.
+    /// Nodes that are sewn to each other count as one.
     #[must_use]
     pub fn cross(&self, s: usize, t: usize, x: &[Vec3]) -> bool {
         let nodes = |t: usize| self.triangles[t].map(|v| self.point[v as usize]);

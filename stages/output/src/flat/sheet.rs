@@ -286,6 +286,7 @@ pub(super) fn assembled(pieces: &SurfacePieces, parts: Vec<PieceDetails>) -> Gar
         pinned: Vec::new(),
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
     }
 }
 

@@ -2,11 +2,13 @@
 
 mod check;
 mod copyright;
+mod frames;
 mod garment_obj;
 mod glb;
 mod obj;
 pub mod origin;
 mod patterns;
+mod pictures;
 mod ply;
 mod power_of_two;
 mod preview;
@@ -20,6 +22,7 @@ mod texture_file;
 mod turntable;
 mod usdz;
 
+pub use frames::Frames;
 pub use garment_obj::GarmentObj;
 pub use glb::Glb;
 pub use obj::Obj;
@@ -28,6 +31,7 @@ pub use patterns::json::PatternJson;
 pub use patterns::pdf::{PatternPaper, PatternPdf};
 pub use patterns::plt::{AlongRoll, HpglStandard, PatternPlt};
 pub use patterns::svg::PatternSvg;
+pub use pictures::{PictureFile, Pictures};
 pub use ply::Ply;
 pub use preview::{Framing, Preview};
 pub use reporting::report::Report;
@@ -41,6 +45,7 @@ use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
+    registry.add::<Frames>();
     registry.add::<Glb>();
     registry.add::<GarmentObj>();
     registry.add::<Obj>();
@@ -50,6 +55,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<PatternPdf>();
     registry.add::<PatternPlt>();
     registry.add::<PatternSvg>();
+    registry.add::<Pictures>();
     registry.add::<Ply>();
     registry.add::<Preview>();
     registry.add::<Report>();

@@ -40,6 +40,7 @@ pub(crate) fn whole(
         pinned: Vec::new(),
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
         positions: points,
     };
     offsets.iter().for_each(|(name, (first, panel))| append(&mut g, name, *first, panel, &fabric));

@@ -1,8 +1,8 @@
 //! Cloth near itself by parry3d's tree of boxes.
 //!
 //! The tree is built once, where the cloth first lies; a query copies it, fits the boxes to where
-//! the cloth is, and looks from every triangle. O(n log n + pairs). The order in which parry3d finds
-//! pairs does not matter: they are sorted.
+//! the cloth is, and looks from every triangle. O(n log n + pairs). The order in which parry3d
+//! finds pairs does not matter: they are sorted.
 
 use super::super::search::ClothSearch;
 use super::boxed;

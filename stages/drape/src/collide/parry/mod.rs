@@ -1,8 +1,9 @@
-//! parry3d as the kernel of a scheme: the skin of a body on its `TriMesh`, cloth on its tree of boxes.
+//! parry3d as the kernel of a scheme: the skin of a body on its `TriMesh`, cloth on its tree of
+//! boxes.
 //!
 //! Of parry3d are the trees, the closest points with their features, and the pseudo-normals. Of our
-//! own are the exact signs by which a path enters and triangles cross, and the pairs of features that
-//! two triangles answer for, of which parry3d has none.
+//! own are the exact signs by which a path enters and triangles cross, and the pairs of features
+//! that two triangles answer for, of which parry3d has none.
 
 mod cloth;
 mod skin;

@@ -1,9 +1,10 @@
 //! A closed mesh as parry3d's `TriMesh`, with the pseudo-normals that tell inside from outside.
 //!
-//! O(n log n) to build, O(log n) a query. A mesh without triangles, which parry3d refuses, is far
+//! O(n log n) to build, O(log n) a query. Limit: for a point on an edge, to the last bit, the
+//! normal is that of a triangle beside it. A mesh without triangles, which parry3d refuses, is far
 //! from everything.
 
-use super::super::search::Skin;
+use super::super::search::BodySkin;
 use super::{boxed, of_parry, to_parry};
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags, TrianglePointLocation};
@@ -38,7 +39,7 @@ impl ParrySkin {
     }
 }
 
-impl Skin for ParrySkin {
+impl BodySkin for ParrySkin {
     fn over(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let points = vertices.iter().map(to_parry).collect();
         let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED).ok();

@@ -13,15 +13,15 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// Bytes with the views and accessors that name their parts.
 #[derive(Default)]
-pub(super) struct Buffer {
-    pub(super) bytes: Vec<u8>,
-    pub(super) views: Vec<Value>,
-    pub(super) accessors: Vec<Value>,
+pub(in crate::write) struct Buffer {
+    pub(in crate::write) bytes: Vec<u8>,
+    pub(in crate::write) views: Vec<Value>,
+    pub(in crate::write) accessors: Vec<Value>,
 }
 
 impl Buffer {
     /// Appends bytes on a multiple of four; returns the view's index.
-    pub(super) fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
+    pub(in crate::write) fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         if let Some(target) = target {
@@ -38,7 +38,12 @@ impl Buffer {
     }
 
     /// Appends vectors of floats; returns the accessor's index.
-    pub(super) fn floats<const N: usize>(&mut self, rows: Vec<[f32; N]>, kind: &str, bounds: bool) -> usize {
+    pub(in crate::write) fn floats<const N: usize>(
+        &mut self,
+        rows: Vec<[f32; N]>,
+        kind: &str,
+        bounds: bool,
+    ) -> usize {
         let bytes: Vec<u8> = rows.iter().flatten().flat_map(|f| f.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(ARRAY_BUFFER));
         let mut accessor =
@@ -52,7 +57,7 @@ impl Buffer {
 
     /// Appends positions of 16 bits per coordinate, each row padded to eight bytes; returns the
     /// accessor's index.
-    pub(super) fn shorts(&mut self, rows: Vec<[i16; 3]>) -> usize {
+    pub(in crate::write) fn shorts(&mut self, rows: Vec<[i16; 3]>) -> usize {
         let row = |[x, y, z]: &[i16; 3]| [*x, *y, *z, 0];
         let bytes: Vec<u8> = rows.iter().flat_map(row).flat_map(i16::to_le_bytes).collect();
         let view = self.strided(&bytes, 8);
@@ -64,7 +69,11 @@ impl Buffer {
 
     /// Appends vectors of 8 bits a coordinate, each row filled up to four bytes; returns the
     /// accessor's index.
-    pub(super) fn bytes_of_vectors<const N: usize>(&mut self, rows: Vec<[i8; N]>, kind: &str) -> usize {
+    pub(in crate::write) fn bytes_of_vectors<const N: usize>(
+        &mut self,
+        rows: Vec<[i8; N]>,
+        kind: &str,
+    ) -> usize {
         let row = |r: &[i8; N]| -> [i8; 4] { std::array::from_fn(|k| r.get(k).copied().unwrap_or(0)) };
         let bytes: Vec<u8> = rows.iter().flat_map(row).flat_map(i8::to_le_bytes).collect();
         let view = self.strided(&bytes, 4);
@@ -81,7 +90,7 @@ impl Buffer {
 
     /// Appends triangles; 16 bits suffice for up to 65,535 vertices (the last value restarts a
     /// strip).
-    pub(super) fn indices(&mut self, triangles: &[[u32; 3]], vertices: usize) -> usize {
+    pub(in crate::write) fn indices(&mut self, triangles: &[[u32; 3]], vertices: usize) -> usize {
         let flat = triangles.iter().flatten();
         let (bytes, kind): (Vec<u8>, u32) = match vertices <= usize::from(u16::MAX) {
             true => (flat.flat_map(|&i| (i as u16).to_le_bytes()).collect(), UNSIGNED_SHORT),

@@ -8,7 +8,7 @@
 //! that every viewer reads the map in the same frame. Cost: the encoding of the textures. Limit: 4
 //! GiB, the format's own.
 
-mod buffer;
+pub(in crate::write) mod buffer;
 mod grid;
 mod material;
 mod mesh;
@@ -208,7 +208,7 @@ fn extensions(model: &Model, quantised: bool, root: &mut Value) {
     }
 }
 
-fn pack(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, StageError> {
+pub(in crate::write) fn pack(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, StageError> {
     json.resize(json.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
     let total = 12 + 8 + json.len() + 8 + binary.len();

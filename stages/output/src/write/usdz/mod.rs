@@ -9,8 +9,8 @@ mod materials;
 mod scene;
 #[cfg(test)]
 mod tests;
-mod text;
-mod zip;
+pub(in crate::write) mod text;
+pub(in crate::write) mod zip;
 
 use super::check::check_model;
 use super::copyright::check_copyright;

@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 /// Decimals of unit vectors and shares: a hundredth of a degree.
-pub(super) const UNIT: usize = 4;
+pub(in crate::write) const UNIT: usize = 4;
 
 /// A number with so many decimals at most: as short as it can be, without a minus before zero.
-pub(super) fn number(value: f64, decimals: usize) -> String {
+pub(in crate::write) fn number(value: f64, decimals: usize) -> String {
     let mut text = format!("{value:.decimals$}");
     if text.contains('.') {
         text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
@@ -15,18 +15,18 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
 }
 
 /// A share of one, such as a colour or roughness, to four decimals.
-pub(super) fn share(value: f32) -> String {
+pub(in crate::write) fn share(value: f32) -> String {
     number(f64::from(value), UNIT)
 }
 
 /// `(1, 2, 3)`.
-pub(super) fn tuple(values: &[f64], decimals: usize) -> String {
+pub(in crate::write) fn tuple(values: &[f64], decimals: usize) -> String {
     let numbers: Vec<String> = values.iter().map(|v| number(*v, decimals)).collect();
     format!("({})", numbers.join(", "))
 }
 
 /// `[a, b]`, of as many items as there are.
-pub(super) fn list(items: impl Iterator<Item = String>) -> String {
+pub(in crate::write) fn list(items: impl Iterator<Item = String>) -> String {
     let mut text = String::from("[");
     for (i, item) in items.enumerate() {
         let _ = write!(text, "{}{item}", if i == 0 { "" } else { ", " });
@@ -36,13 +36,13 @@ pub(super) fn list(items: impl Iterator<Item = String>) -> String {
 }
 
 /// A text in quotes; control characters become spaces.
-pub(super) fn quoted(text: &str) -> String {
+pub(in crate::write) fn quoted(text: &str) -> String {
     let plain = text.replace('\\', "\\\\").replace('"', "\\\"");
     format!("\"{}\"", plain.replace(char::is_control, " "))
 }
 
 /// Names of prims and variants: ASCII letters, digits and `_`, no digit in front, no two alike.
-pub(super) fn identifiers<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+pub(in crate::write) fn identifiers<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     let lettered = |name: &str| {
         let text: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         if text.starts_with(|c: char| c.is_ascii_digit()) { format!("_{text}") } else { text }

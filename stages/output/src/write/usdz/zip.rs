@@ -22,7 +22,7 @@ const VERSION: u16 = 10;
 /// The archive of files, by their paths with `/` in ASCII letters, in this order.
 ///
 /// Errors: it exceeds the format's limits.
-pub(super) fn stored(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, StageError> {
+pub(in crate::write) fn stored(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, StageError> {
     let hint = "lower `size` of the texturer or make the mesh coarser";
     let too_large = || StageError::invalid("the model exceeds the 4 GiB of a ZIP archive").hint(hint);
     let (mut archive, mut directory) = (Vec::new(), Vec::new());

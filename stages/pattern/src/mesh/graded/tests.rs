@@ -202,6 +202,7 @@ fn rolled(radius: f64, half: f64) -> Garment {
         pinned: vec![],
         status: SolveStatus::default(),
         starts: Vec::new(),
+        motion: None,
     }
 }
 

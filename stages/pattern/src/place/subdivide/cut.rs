@@ -78,6 +78,7 @@ impl<'a> GarmentCut<'a> {
             pinned: old.pinned.iter().map(kept).collect(),
             status: SolveStatus { converged: false, held: Held::default(), ..old.status.clone() },
             starts: Vec::new(),
+            motion: old.motion.clone(),
         };
         for k in 0..old.panels.len() {
             cx.check()?;

@@ -4,25 +4,20 @@
 //! is set down in `docs/reference/turntable.md`. Cost: a field of blocks for each view and
 //! neighbour.
 
-mod field;
-mod level;
-mod matching;
-
 use super::{numbers, sheet};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use field::Vector;
 use image::{GrayImage, Rgba, RgbaImage};
-use level::Pyramid;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use toile_core::{Context, StageError};
+use toile_views::flow::{BLOCK, PARTS, Pyramid, Vector, motion};
 
 /// Quality of the sheets that hold the coverage: what JPEG leaves beside an outline is cut off by
 /// the page.
 const COVER_QUALITY: u8 = 30;
 /// Blocks of a sheet along a block of the flow.
-const PER_BLOCK: usize = matching::BLOCK / sheet::BLOCK as usize;
+const PER_BLOCK: usize = BLOCK / sheet::BLOCK as usize;
 
 /// The flow of every view to its neighbours.
 ///
@@ -38,7 +33,7 @@ pub(super) fn flow(
         let (own, mut bytes) = (Pyramid::of(&views[k]), Vec::new());
         for other in neighbours(k, around, views.len()).into_iter().flatten() {
             cx.check()?;
-            let field = matching::motion(&own, &Pyramid::of(&views[other]), cx)?;
+            let field = motion(&own, &Pyramid::of(&views[other]), cx)?;
             let columns = field.columns;
             encode(&field.whole(), columns, &spans[k], &mut bytes);
         }
@@ -46,8 +41,8 @@ pub(super) fn flow(
     };
     let bytes: Vec<Vec<u8>> = (0..views.len()).into_par_iter().map(of).collect::<Result<_, StageError>>()?;
     Ok(json!({
-        "block": matching::BLOCK,
-        "parts": matching::PARTS,
+        "block": BLOCK,
+        "parts": PARTS,
         "vectors": STANDARD.encode(bytes.concat()),
     }))
 }

@@ -13,11 +13,11 @@ use std::ops::Range;
 use toile_core::{Context, StageError};
 
 /// Side of a block of the picture itself, px.
-pub(super) const BLOCK: usize = 16;
+pub const BLOCK: usize = 16;
 /// Side of a block of a reduction, px: so blocks of the picture and of its half are the same ones.
 const SMALL: usize = BLOCK / 2;
 /// Parts of a pixel in what is found.
-pub(super) const PARTS: i32 = 4;
+pub const PARTS: i32 = 4;
 /// The longest motion is the picture's height divided by this.
 const REACH: usize = 8;
 /// Blocks are compared with a margin around them: their side divided by this.
@@ -36,7 +36,7 @@ const STEPS: usize = 3;
 ///
 /// # Errors
 /// When the run has been stopped.
-pub(super) fn motion(from: &Pyramid, to: &Pyramid, cx: &Context) -> Result<FlowField, StageError> {
+pub fn motion(from: &Pyramid, to: &Pyramid, cx: &Context) -> Result<FlowField, StageError> {
     let mut coarser: Option<FlowField> = None;
     for (k, pair) in from.0.iter().zip(&to.0).enumerate().rev() {
         let search = BlockSearch { from: pair.0, to: pair.1, side: if k == 0 { BLOCK } else { SMALL } };

@@ -68,10 +68,11 @@ fn read([r, g, b, a]: [u8; 4]) -> [u8; 2] {
 
 /// The view itself, then its reductions.
 #[derive(Debug)]
-pub(super) struct Pyramid(pub(super) Vec<FlowLevel>);
+pub struct Pyramid(pub(super) Vec<FlowLevel>);
 
 impl Pyramid {
-    pub(super) fn of(view: &RgbaImage) -> Pyramid {
+    /// Of a view whose transparent pixels show nothing.
+    pub fn of(view: &RgbaImage) -> Pyramid {
         let mut levels = vec![FlowLevel::of(view)];
         while let Some(last) = levels.last().filter(|l| l.height > LOWEST) {
             levels.push(last.half());

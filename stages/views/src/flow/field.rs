@@ -1,19 +1,22 @@
 //! A displacement for each block of a picture.
 
 /// Pixels: whole ones while blocks are searched for, quarters in what is found.
-pub(super) type Vector = [i32; 2];
+pub type Vector = [i32; 2];
 
 /// Blocks row by row; none where nothing is seen.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct FlowField {
-    pub(super) columns: usize,
-    pub(super) rows: usize,
-    pub(super) vectors: Vec<Option<Vector>>,
+pub struct FlowField {
+    /// Blocks across.
+    pub columns: usize,
+    /// Blocks down.
+    pub rows: usize,
+    /// Row by row.
+    pub vectors: Vec<Option<Vector>>,
 }
 
 impl FlowField {
     /// Known vectors of a block and of the eight around it.
-    pub(super) fn near(&self, column: usize, row: usize) -> impl Iterator<Item = Vector> + '_ {
+    pub(crate) fn near(&self, column: usize, row: usize) -> impl Iterator<Item = Vector> + '_ {
         let columns = column.saturating_sub(1)..(column + 2).min(self.columns);
         (row.saturating_sub(1)..(row + 2).min(self.rows))
             .flat_map(move |r| columns.clone().filter_map(move |c| self.vectors[r * self.columns + c]))
@@ -31,7 +34,7 @@ impl FlowField {
 
     /// The vectors carried on, ring by ring, to the blocks that have none; zero where no block has
     /// one.
-    pub(super) fn whole(mut self) -> Vec<Vector> {
+    pub fn whole(mut self) -> Vec<Vector> {
         for _ in 0..self.columns.max(self.rows) {
             let ring =
                 |k: usize| self.vectors[k].or_else(|| mean(self.near(k % self.columns, k / self.columns)));
