@@ -338,7 +338,7 @@ fn vertices_too_light_for_the_least_step_get_inertia_and_no_weight() {
     let least = 8.0 * limit;
     let rest = |solver: &mut CentralDifferences, model: &Model| {
         let (mut s, mut shortest) = (state.clone(), f64::INFINITY);
-        while s.time < 2.0 {
+        while s.time < 8.0 {
             shortest = shortest.min(solver.advance(model, &mut s).unwrap().advanced);
         }
         (s.x, shortest)
