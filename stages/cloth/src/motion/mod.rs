@@ -352,6 +352,9 @@ impl<'a> MotionRun<'a> {
         moving.set_gravity(Vec3::zeros());
         moving.set_damping(self.settings.drag, self.settings.sewing_friction);
         moving.set_air(self.scene.phases.last().and_then(|p| p.air).map(Air::calmed));
+        if moving.seams.widest(&moving.state.x).is_some_and(|(_, gap)| gap < self.settings.join_gap) {
+            return moving.join(self);
+        }
         let (mut widest, mut since) = (f64::INFINITY, moving.progress.time);
         while !moving.seams.is_empty() && moving.progress.time < longest {
             self.step(&mut moving, f64::INFINITY)?;
@@ -432,13 +435,12 @@ impl<'a> MotionRun<'a> {
 
     /// Hands the recorder the step that was made, where a frame is due.
     fn record(&mut self, before: Option<(f64, Vec<Vec3>)>, moving: &Moving) -> Result<(), MotionError> {
-        let (Some(recorder), Some((time, x))) = (&mut self.recorder, before) else { return Ok(()) };
-        let now = moving.progress.time;
-        if !recorder.is_due(now) {
+        let (now, Some((time, x))) = (moving.progress.time, before) else { return Ok(()) };
+        if !self.recorder.as_ref().is_some_and(|r| r.is_due(now)) {
             return Ok(());
         }
         let (from, to) = (self.vertices(moving, &x), self.vertices(moving, &moving.state.x));
-        match recorder.pass((time, &from), (now, &to)) {
+        match self.recorder.as_mut().is_none_or(|r| r.pass((time, &from), (now, &to))) {
             true => Ok(()),
             false => Err(MotionError::Stopped),
         }
