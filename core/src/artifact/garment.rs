@@ -1,8 +1,11 @@
 //! Panels in space, sewn or about to be.
 
+mod motion;
+
 use super::body::{obj_text, vertex_normals};
-use super::{Artifact, ArtifactType, Fabric, Kind, Measures, Motion, Point2, Point3, SeamKind, Vector3};
+use super::{Artifact, ArtifactType, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
 use crate::artifact::store::sound::{alike, ensure, finite, indices, length};
+pub use motion::RecordedMotion;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -124,7 +127,7 @@ pub struct Garment {
     /// wrong; a stage that sews or moves the garment leaves none.
     pub starts: Vec<GarmentStart>,
     /// How it moved while solvers stepped in time; nothing where none was asked to record it.
-    pub motion: Option<Arc<Motion>>,
+    pub motion: Option<Arc<RecordedMotion>>,
 }
 
 impl Garment {

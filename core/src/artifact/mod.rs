@@ -20,7 +20,6 @@ mod locate;
 mod mask;
 mod measures;
 mod model;
-mod motion;
 mod outline;
 mod panel;
 mod pattern;
@@ -38,14 +37,15 @@ pub use figures::{
     Figures, GarmentFigures, GirthFigures, PanelFigures, PenetrationFigures, Shortfall, StrainFigures,
 };
 pub use files::{OutputFile, OutputFiles};
-pub use garment::{Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, SeamState, SolveStatus, quantile};
+pub use garment::{
+    Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, RecordedMotion, SeamState, SolveStatus, quantile,
+};
 pub use geometry::{Point2, Point3, Vector2, Vector3, polygon_area, polyline_length};
 pub use hand::Hand;
 pub use locate::{Located, Locator};
 pub use mask::Mask;
 pub use measures::{Measure, Measures};
 pub use model::{Material, Mesh, Model, Sheen, Texture, Variant};
-pub use motion::Motion;
 pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
 pub use pattern::{

@@ -202,7 +202,7 @@ pub fn moved_garment() -> Garment {
     let at = |k: usize| {
         garment.positions.iter().map(move |p| [p.x as f32, (p.y + 0.01 * (2 - k) as f64) as f32, p.z as f32])
     };
-    let motion = Motion {
+    let motion = RecordedMotion {
         every: 0.04,
         end: 0.1,
         triangles: garment.triangles.clone(),

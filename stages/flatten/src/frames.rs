@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, Point2, Vector2, Vector3};
 
 /// Triangles in their planes.
 #[derive(Debug, Clone)]
-pub(crate) struct Frames {
+pub(crate) struct TriangleFrames {
     /// Gradients of the hat functions of corners 1 and 2; that of corner 0 is minus their sum.
     gradients: Vec<[Vector2<f64>; 2]>,
     /// The share of each triangle in the area.
@@ -19,7 +19,7 @@ pub(crate) struct Frames {
     unit: f64,
 }
 
-impl Frames {
+impl TriangleFrames {
     /// Lays out every triangle.
     #[must_use]
     pub(crate) fn new(surface: &PieceSurface) -> Self {
@@ -58,7 +58,7 @@ impl Frames {
         [-(b + c), b, c]
     }
 
-    /// The map of a triangle whose corners lie at `q`, in units of [`Frames::unit`].
+    /// The map of a triangle whose corners lie at `q`, in units of [`TriangleFrames::unit`].
     #[must_use]
     pub(crate) fn map(&self, triangle: usize, q: [Point2<f64>; 3]) -> Matrix2<f64> {
         let [b, c] = self.gradients[triangle];
@@ -71,7 +71,7 @@ impl Frames {
         )
     }
 
-    /// Flat places in units of [`Frames::unit`].
+    /// Flat places in units of [`TriangleFrames::unit`].
     #[must_use]
     pub(crate) fn scaled(&self, flat: &[Point2<f64>]) -> Vec<Point2<f64>> {
         flat.iter().map(|p| p / self.unit).collect()

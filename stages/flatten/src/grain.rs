@@ -5,7 +5,7 @@
 //! linear equation.
 
 use crate::error::FlattenError;
-use crate::frames::{Frames, local_axes};
+use crate::frames::{TriangleFrames, local_axes};
 use crate::surface::PieceSurface;
 use nalgebra::{Point2, Rotation2, Vector2, Vector3};
 
@@ -76,9 +76,9 @@ impl Grain {
         }
     }
 
-    /// The weighted sum of flat places (in units of [`Frames::unit`]) that becomes upright; the
-    /// length of a direction is made 1.
-    pub(crate) fn weights(&self, surface: &PieceSurface, frames: &Frames) -> Vec<(u32, f64)> {
+    /// The weighted sum of flat places (in units of [`TriangleFrames::unit`]) that becomes upright;
+    /// the length of a direction is made 1.
+    pub(crate) fn weights(&self, surface: &PieceSurface, frames: &TriangleFrames) -> Vec<(u32, f64)> {
         match self {
             Self::Direction(d) => {
                 let mut sums = vec![0.0; surface.positions().len()];
@@ -99,7 +99,7 @@ impl Grain {
 }
 
 /// How much each corner's place adds to the image of a direction.
-fn corner_weights(surface: &PieceSurface, frames: &Frames, t: usize, d: &Vector3<f64>) -> [f64; 3] {
+fn corner_weights(surface: &PieceSurface, frames: &TriangleFrames, t: usize, d: &Vector3<f64>) -> [f64; 3] {
     let [x, y] = local_axes(surface, t);
     let d = Vector2::new(d.dot(&x), d.dot(&y));
     frames.gradients(t).map(|g| g.dot(&d))

@@ -28,7 +28,7 @@ const ENGINE_WORDS: [&str; 15] = [
 
 /// Where such a word is the user's own: it stands in the file that they gave, or in the one that is
 /// written.
-const OWN_WORDS: [(&str, &str, &str); 14] = [
+const OWN_WORDS: [(&str, &str, &str); 15] = [
     ("flat/sheet.rs", "vertex", "the mesh to flatten is the user's"),
     ("flat/file/read_glb.rs", "vert", "the mesh to flatten is the user's"),
     ("place/sew.rs", "vertices", "seams of meshes that the user wired"),
@@ -38,6 +38,7 @@ const OWN_WORDS: [(&str, &str, &str); 14] = [
     ("write/check.rs", "vertex", "a model of the user's own stage"),
     ("write/ply.rs", "vert", "the file's format"),
     ("write/usdz/scene.rs", "vertex", "the file's format"),
+    ("write/frames/usdz.rs", "vert", "the file's format"),
     ("write/reporting/data.rs", "vertices", "a heading of figures"),
     ("drape/asleep.rs", "vertices", "what a decision saves, for `explain`"),
     ("drape/static_equilibrium.rs", "newton", "source of the method"),

@@ -214,7 +214,13 @@ fn of_garments() {
     others.extend(seams.map(|seam| Garment { seams: vec![seam], ..garment() }));
     let motions = changed!(
         motion(),
-        Motion { every: 0.05, end: 0.06, triangles: vec![], vertices: 2, positions: vec![[0.0; 3]; 3] }
+        RecordedMotion {
+            every: 0.05,
+            end: 0.06,
+            triangles: vec![],
+            vertices: 2,
+            positions: vec![[0.0; 3]; 3]
+        }
     );
     others.extend(motions.into_iter().map(|m| Garment { motion: Some(Arc::new(m)), ..garment() }));
     let states = changed!(

@@ -4,8 +4,8 @@ use super::flat::{rgb, value, word};
 use super::plan::{kind_fields, kind_of};
 use super::{Reader, Record, Stored};
 use crate::artifact::{
-    Body, Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, Material, Mesh, Model, Motion, Point3,
-    SeamState, Sheen, SolveStatus, Texture, Variant,
+    Body, Garment, GarmentPanel, GarmentSeam, GarmentStart, Held, Material, Mesh, Model, Point3,
+    RecordedMotion, SeamState, Sheen, SolveStatus, Texture, Variant,
 };
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -83,7 +83,7 @@ impl Stored for Garment {
     }
 }
 
-fn motion_fields(m: &Motion) -> Record<'_> {
+fn motion_fields(m: &RecordedMotion) -> Record<'_> {
     Record::new()
         .number("every", m.every)
         .number("end", m.end)
@@ -92,8 +92,8 @@ fn motion_fields(m: &Motion) -> Record<'_> {
         .list("positions", &m.positions)
 }
 
-fn motion_of(r: &Reader<'_>) -> Result<Motion, String> {
-    Ok(Motion {
+fn motion_of(r: &Reader<'_>) -> Result<RecordedMotion, String> {
+    Ok(RecordedMotion {
         every: r.one("every")?,
         end: r.one("end")?,
         triangles: r.list("triangles")?,

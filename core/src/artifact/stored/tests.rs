@@ -114,9 +114,9 @@ pub(in crate::artifact) fn garment() -> Garment {
 }
 
 /// Two frames of a triangle.
-pub(in crate::artifact) fn motion() -> Motion {
+pub(in crate::artifact) fn motion() -> RecordedMotion {
     let places = (0..6).map(|k| [k as f32, 0.5, -1.0]).collect();
-    Motion { every: 0.04, end: 0.05, triangles: vec![[0, 1, 2]], vertices: 3, positions: places }
+    RecordedMotion { every: 0.04, end: 0.05, triangles: vec![[0, 1, 2]], vertices: 3, positions: places }
 }
 
 /// What friction holds of a garment of three vertices.

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 use toile_cloth::motion::{Moved, Recorder};
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 use toile_core::prelude::*;
 
 /// Bytes of frames at most, all solvers together: 2 GB, 30,000 frames of a garment of 5,500
@@ -36,7 +36,7 @@ pub(super) fn recorder(every: f64, garment: &Garment, cx: &Context) -> Result<Op
 }
 
 /// Whether the frames are of this garment's mesh.
-fn is_of(motion: &Motion, garment: &Garment) -> bool {
+fn is_of(motion: &RecordedMotion, garment: &Garment) -> bool {
     motion.vertices == garment.positions.len() && motion.triangles == garment.triangles
 }
 
@@ -51,15 +51,19 @@ pub(super) fn full(every: f64) -> StageError {
 }
 
 /// The motion so far, with what was recorded.
-pub(super) fn after(recorder: Option<Recorder>, garment: &Garment, moved: &Moved) -> Option<Arc<Motion>> {
+pub(super) fn after(
+    recorder: Option<Recorder>,
+    garment: &Garment,
+    moved: &Moved,
+) -> Option<Arc<RecordedMotion>> {
     let Some(recorder) = recorder else { return garment.motion.clone() };
     let mut motion = match garment.motion.as_deref().filter(|m| is_of(m, garment)) {
         Some(before) => before.clone(),
-        None => Motion {
+        None => RecordedMotion {
             every: recorder.every(),
             triangles: garment.triangles.clone(),
             vertices: garment.positions.len(),
-            ..Motion::default()
+            ..RecordedMotion::default()
         },
     };
     motion.positions.extend(recorder.positions);
@@ -141,7 +145,8 @@ mod tests {
     fn frames_begin_anew_on_another_mesh() {
         let cx = Context::quiet();
         let mut first = falling(0.02).run(&sheet(), None, &cx).unwrap();
-        let motion = Motion { vertices: 3, triangles: vec![], ..first.motion.as_deref().unwrap().clone() };
+        let motion =
+            RecordedMotion { vertices: 3, triangles: vec![], ..first.motion.as_deref().unwrap().clone() };
         first.motion = Some(Arc::new(motion));
         cx.take_remarks();
         let second = falling(0.02).run(&first, None, &cx).unwrap();

@@ -8,7 +8,7 @@ use super::straight::{line_terms, snap};
 use super::{CareOptions, Objective, boundary_chains, straight_chains};
 use crate::error::FlattenError;
 use crate::flatteners::{Flattening, Placement};
-use crate::frames::{Frames, flipped};
+use crate::frames::{TriangleFrames, flipped};
 use crate::newton::{Constraint, NewtonOutcome, NewtonProblem, QuadraticTerm};
 use crate::surface::PieceSurface;
 use crate::system::PieceSystem;
@@ -32,7 +32,7 @@ impl PieceCare<'_> {
         if lines.is_empty() && self.sides.is_empty() && near.is_empty() {
             return Ok(0);
         }
-        let frames = Frames::new(self.surface);
+        let frames = TriangleFrames::new(self.surface);
         let tension = self.placement.tension;
         let plane = StretchedPlane { frames, stretch: Vector2::new(1.0 + tension.weft, 1.0 + tension.warp) };
         let mut q = plane.stretched(&flat.points);
@@ -104,7 +104,7 @@ impl PieceCare<'_> {
 /// The plane in which the solver works: stretched as the garment is, so that the energy knows it,
 /// lengths in the unit of the frames.
 struct StretchedPlane {
-    frames: Frames,
+    frames: TriangleFrames,
     stretch: Vector2<f64>,
 }
 

@@ -14,7 +14,7 @@ use strain::triangle_strains;
 pub use strain::{StrainSpread, TriangleStrain};
 
 use crate::error::SurfaceError;
-use crate::frames::{Frames, flat_area, flipped};
+use crate::frames::{TriangleFrames, flat_area, flipped};
 use crate::surface::{FREE, PieceSurface};
 use nalgebra::{Point2, Vector2, Vector3};
 use std::f64::consts::PI;
@@ -82,7 +82,7 @@ pub fn distortion(surface: &PieceSurface, flat: &[Point2<f64>]) -> Result<Distor
     if let Some(vertex) = flat.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
         return Err(SurfaceError::NotFinite { vertex });
     }
-    let frames = Frames::new(surface);
+    let frames = TriangleFrames::new(surface);
     let triangles = triangle_strains(surface, &frames, flat);
     let spread = |of: fn(&TriangleStrain) -> f64| {
         StrainSpread::new(

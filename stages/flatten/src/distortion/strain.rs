@@ -1,7 +1,7 @@
 //! Strain of each triangle, and its spread over the piece.
 
 use crate::energy::singular_values;
-use crate::frames::{Frames, corners};
+use crate::frames::{TriangleFrames, corners};
 use crate::surface::PieceSurface;
 use nalgebra::Point2;
 
@@ -59,7 +59,7 @@ impl StrainSpread {
 #[must_use]
 pub(super) fn triangle_strains(
     surface: &PieceSurface,
-    frames: &Frames,
+    frames: &TriangleFrames,
     flat: &[Point2<f64>],
 ) -> Vec<TriangleStrain> {
     let flat = frames.scaled(flat);

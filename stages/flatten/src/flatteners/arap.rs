@@ -10,7 +10,7 @@
 use super::{Flattening, Placement};
 use crate::energy::ArapEnergy;
 use crate::error::FlattenError;
-use crate::frames::{Frames, corners, flipped};
+use crate::frames::{TriangleFrames, corners, flipped};
 use crate::linear::{CholeskyFactor, slot};
 use crate::newton::{NewtonOutcome, NewtonProblem, StoppingLimits};
 use crate::start::start;
@@ -42,7 +42,7 @@ pub fn arap(
     placement: &Placement,
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), TriangleFrames::new(surface));
     let (flat, start) = start(surface, &system, &frames)?;
     let mut better = flat.clone();
     pairs(&system, &frames, options.pairs, &mut better)?;
@@ -58,7 +58,7 @@ pub fn arap(
 /// Makes `count` pairs of a local and a global step.
 pub(crate) fn pairs(
     system: &PieceSystem,
-    frames: &Frames,
+    frames: &TriangleFrames,
     count: usize,
     q: &mut [Point2<f64>],
 ) -> Result<(), FlattenError> {
@@ -90,7 +90,7 @@ pub(crate) fn pairs(
 }
 
 /// The matrix of `sum share |J|^2` plus the masses, and the masses.
-fn laplacian(system: &PieceSystem, frames: &Frames) -> (Vec<f64>, Vec<f64>) {
+fn laplacian(system: &PieceSystem, frames: &TriangleFrames) -> (Vec<f64>, Vec<f64>) {
     let graph = system.graph();
     let mut values = vec![0.0; graph.vertices() + graph.pairs()];
     let mut masses = vec![0.0; graph.vertices()];

@@ -3,7 +3,7 @@
 
 use super::{Flattening, NOTHING_MINIMISED, Placement};
 use crate::error::FlattenError;
-use crate::frames::Frames;
+use crate::frames::TriangleFrames;
 use crate::start::conformal_start;
 use crate::surface::PieceSurface;
 use crate::system::PieceSystem;
@@ -15,7 +15,7 @@ use crate::system::PieceSystem;
 /// Parameters of the placement, [`FlattenError::NoStart`], [`FlattenError::Factorization`].
 pub fn lscm(surface: &PieceSurface, placement: &Placement) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), TriangleFrames::new(surface));
     let (flat, start) = conformal_start(surface, &system, &frames)?;
     placement.finish(surface, &frames, flat, (start, NOTHING_MINIMISED))
 }

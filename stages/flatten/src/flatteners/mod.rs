@@ -20,7 +20,7 @@ pub use lscm::lscm;
 pub use newton_methods::{springs, symmetric_dirichlet, woven};
 
 use crate::error::FlattenError;
-use crate::frames::{Frames, flipped};
+use crate::frames::{TriangleFrames, flipped};
 use crate::grain::{Grain, turn_upright};
 use crate::newton::NewtonOutcome;
 use crate::start::StartMethod;
@@ -89,7 +89,7 @@ impl Placement {
     pub(crate) fn finish(
         &self,
         surface: &PieceSurface,
-        frames: &Frames,
+        frames: &TriangleFrames,
         mut flat: Vec<Point2<f64>>,
         (start, report): (StartMethod, NewtonOutcome),
     ) -> Result<Flattening, FlattenError> {

@@ -3,7 +3,7 @@
 use super::{Flattening, Placement};
 use crate::energy::{EnergyDensity, SpringEnergy, SymmetricDirichletEnergy, WovenEnergy, WovenStiffness};
 use crate::error::FlattenError;
-use crate::frames::{Frames, flipped};
+use crate::frames::{TriangleFrames, flipped};
 use crate::grain::turn_upright;
 use crate::newton::{Constraint, NewtonProblem, StoppingLimits};
 use crate::start::{StartMethod, neighbour_layout, start};
@@ -23,7 +23,7 @@ pub fn symmetric_dirichlet(
     placement: &Placement,
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), TriangleFrames::new(surface));
     let (mut flat, start) = start(surface, &system, &frames)?;
     let energy = SymmetricDirichletEnergy;
     let problem =
@@ -44,7 +44,7 @@ pub fn springs(
     placement: &Placement,
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
-    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), TriangleFrames::new(surface));
     let layout = frames.scaled(&neighbour_layout(surface));
     let (mut flat, start) = if flipped(system.triangles(), &layout).is_empty() {
         (layout, StartMethod::Neighbours)
@@ -73,7 +73,7 @@ pub fn woven(
 ) -> Result<Flattening, FlattenError> {
     placement.check(surface)?;
     let energy = WovenEnergy::new(stiffness)?;
-    let (system, frames) = (PieceSystem::new(surface, &[]), Frames::new(surface));
+    let (system, frames) = (PieceSystem::new(surface, &[]), TriangleFrames::new(surface));
     let (mut flat, start) = start(surface, &system, &frames)?;
     let upright = upright(surface, &frames, placement, &mut flat);
     let problem = NewtonProblem {
@@ -90,7 +90,7 @@ pub fn woven(
 /// Turns the grain up, and gives the equation that keeps it there.
 pub(crate) fn upright(
     surface: &PieceSurface,
-    frames: &Frames,
+    frames: &TriangleFrames,
     placement: &Placement,
     flat: &mut [Point2<f64>],
 ) -> Vec<Constraint> {

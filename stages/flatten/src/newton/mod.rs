@@ -23,7 +23,7 @@ pub(crate) use term::QuadraticTerm;
 
 use crate::energy::{EnergyDensity, Hessian};
 use crate::error::FlattenError;
-use crate::frames::Frames;
+use crate::frames::TriangleFrames;
 use crate::linear::CholeskyFactor;
 use crate::system::PieceSystem;
 use assembly::Assembly;
@@ -96,7 +96,7 @@ pub(crate) struct NewtonProblem<'a> {
     /// The surface.
     pub system: &'a PieceSystem,
     /// Its triangles in their planes.
-    pub frames: &'a Frames,
+    pub frames: &'a TriangleFrames,
     /// The energy of the triangles.
     pub energy: &'a dyn EnergyDensity,
     /// Quadratic terms, their vertices coupled in the system's graph.
@@ -112,7 +112,7 @@ impl NewtonProblem<'_> {
         assembly::energy_at(self, q)
     }
 
-    /// Moves `q` (units of [`Frames::unit`], no triangle flipped) to a minimum.
+    /// Moves `q` (units of [`TriangleFrames::unit`], no triangle flipped) to a minimum.
     ///
     /// # Errors
     /// [`FlattenError::InvalidParameter`] for options, [`FlattenError::Factorization`] if a system

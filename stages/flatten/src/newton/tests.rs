@@ -11,7 +11,7 @@ fn solve(
 ) -> Result<(Vec<Point2<f64>>, NewtonOutcome), FlattenError> {
     let s = surface(bump(12, 12, 0.8));
     let pairs: Vec<_> = terms.iter().flat_map(QuadraticTerm::pairs).collect();
-    let (system, frames) = (PieceSystem::new(&s, &pairs), Frames::new(&s));
+    let (system, frames) = (PieceSystem::new(&s, &pairs), TriangleFrames::new(&s));
     let (mut q, _) = start(&s, &system, &frames)?;
     let problem = NewtonProblem { system: &system, frames: &frames, energy, terms, constraints };
     let report = problem.minimise(&mut q, options)?;

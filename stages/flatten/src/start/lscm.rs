@@ -7,7 +7,7 @@
 //! own, and no promise against flips. Cost: one factor of n complex unknowns.
 
 use crate::error::FlattenError;
-use crate::frames::Frames;
+use crate::frames::TriangleFrames;
 use crate::linear::{CholeskyFactor, slot};
 use crate::surface::PieceSurface;
 use crate::system::PieceSystem;
@@ -21,7 +21,7 @@ use nalgebra::{Point2, Point3};
 pub(super) fn lscm_map(
     surface: &PieceSurface,
     system: &PieceSystem,
-    frames: &Frames,
+    frames: &TriangleFrames,
 ) -> Result<Vec<Point2<f64>>, FlattenError> {
     let graph = system.graph();
     let mut values = vec![c64::new(0.0, 0.0); graph.vertices() + graph.pairs()];

@@ -18,7 +18,7 @@ use tutte::tutte;
 
 use crate::energy::SymmetricDirichletEnergy;
 use crate::error::FlattenError;
-use crate::frames::{Frames, corners, flat_area, flipped};
+use crate::frames::{TriangleFrames, corners, flat_area, flipped};
 use crate::newton::{NewtonProblem, StoppingLimits};
 use crate::surface::PieceSurface;
 use crate::system::PieceSystem;
@@ -48,7 +48,7 @@ const FAR: f64 = 1.0;
 /// When a start has settled enough for other energies to take over.
 const SETTLED: StoppingLimits = StoppingLimits { iterations: 60, tolerance: 1e-3 };
 
-/// The cheapest start without flips, in units of [`Frames::unit`].
+/// The cheapest start without flips, in units of [`TriangleFrames::unit`].
 ///
 /// # Errors
 /// [`FlattenError::NoStart`] if rounding leaves flips in every one, [`FlattenError::Factorization`]
@@ -56,7 +56,7 @@ const SETTLED: StoppingLimits = StoppingLimits { iterations: 60, tolerance: 1e-3
 pub(crate) fn start(
     surface: &PieceSurface,
     system: &PieceSystem,
-    frames: &Frames,
+    frames: &TriangleFrames,
 ) -> Result<(Vec<Point2<f64>>, StartMethod), FlattenError> {
     let flat = frames.scaled(&projection(surface));
     if least_area_ratio(system, frames, &flat) > LEAST_PROJECTED {
@@ -68,7 +68,11 @@ pub(crate) fn start(
 }
 
 /// Brings a start that is far from isometric nearer, by the energy that does so in fewest steps.
-fn settle(system: &PieceSystem, frames: &Frames, flat: &mut [Point2<f64>]) -> Result<(), FlattenError> {
+fn settle(
+    system: &PieceSystem,
+    frames: &TriangleFrames,
+    flat: &mut [Point2<f64>],
+) -> Result<(), FlattenError> {
     let energy = &SymmetricDirichletEnergy;
     let problem = NewtonProblem { system, frames, energy, terms: &[], constraints: &[] };
     if problem.energy_at(flat) > FAR {
@@ -85,7 +89,7 @@ fn settle(system: &PieceSystem, frames: &Frames, flat: &mut [Point2<f64>]) -> Re
 pub(crate) fn conformal_start(
     surface: &PieceSurface,
     system: &PieceSystem,
-    frames: &Frames,
+    frames: &TriangleFrames,
 ) -> Result<(Vec<Point2<f64>>, StartMethod), FlattenError> {
     // A refused factor of the conformal system is one more reason to take the other start.
     if let Ok(flat) = lscm_map(surface, system, frames) {
@@ -103,7 +107,7 @@ pub(crate) fn conformal_start(
     }
 }
 
-/// Scales to the area 1, the whole surface's in units of [`Frames::unit`].
+/// Scales to the area 1, the whole surface's in units of [`TriangleFrames::unit`].
 pub(crate) fn with_true_area(system: &PieceSystem, mut flat: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
     let area = flat_area(system.triangles(), &flat);
     if area > 0.0 && area.is_finite() {
@@ -114,7 +118,7 @@ pub(crate) fn with_true_area(system: &PieceSystem, mut flat: Vec<Point2<f64>>) -
 }
 
 /// The least flat area over true area of all triangles.
-fn least_area_ratio(system: &PieceSystem, frames: &Frames, flat: &[Point2<f64>]) -> f64 {
+fn least_area_ratio(system: &PieceSystem, frames: &TriangleFrames, flat: &[Point2<f64>]) -> f64 {
     let ratio = |(t, &c): (usize, &[u32; 3])| frames.map(t, corners(flat, c)).determinant();
     system.triangles().iter().enumerate().map(ratio).fold(f64::INFINITY, f64::min)
 }

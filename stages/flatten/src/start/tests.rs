@@ -1,9 +1,9 @@
 use super::*;
 use crate::shapes::{bump, cone, cylinder, grid, surface};
 
-fn ready(mesh: crate::shapes::PlainMesh) -> (PieceSurface, PieceSystem, Frames) {
+fn ready(mesh: crate::shapes::PlainMesh) -> (PieceSurface, PieceSystem, TriangleFrames) {
     let s = surface(mesh);
-    let (system, frames) = (PieceSystem::new(&s, &[]), Frames::new(&s));
+    let (system, frames) = (PieceSystem::new(&s, &[]), TriangleFrames::new(&s));
     (s, system, frames)
 }
 

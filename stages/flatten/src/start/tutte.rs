@@ -7,7 +7,7 @@
 //! of n unknowns.
 
 use crate::error::FlattenError;
-use crate::frames::{Frames, flipped};
+use crate::frames::{TriangleFrames, flipped};
 use crate::linear::{CholeskyFactor, Graph, elimination_order, slot};
 use crate::surface::PieceSurface;
 use nalgebra::{Point2, Point3};
@@ -19,7 +19,10 @@ const LEAST_WEIGHT: f64 = 0.05;
 ///
 /// # Errors
 /// [`FlattenError::Factorization`] if the system has no factor.
-pub(super) fn tutte(surface: &PieceSurface, frames: &Frames) -> Result<Vec<Point2<f64>>, FlattenError> {
+pub(super) fn tutte(
+    surface: &PieceSurface,
+    frames: &TriangleFrames,
+) -> Result<Vec<Point2<f64>>, FlattenError> {
     let disk = Disk::new(surface);
     let mut flat = disk.embed(surface, |t, k| cotangent(frames, t, k))?;
     if !flipped(surface.triangles(), &flat).is_empty() {
@@ -126,7 +129,7 @@ fn circle(surface: &PieceSurface) -> Vec<(u32, Point2<f64>)> {
 }
 
 /// The cotangent of the angle at corner `k`, at least [`LEAST_WEIGHT`].
-fn cotangent(frames: &Frames, t: usize, k: usize) -> f64 {
+fn cotangent(frames: &TriangleFrames, t: usize, k: usize) -> f64 {
     let g = frames.gradients(t);
     // The gradients are at right angles to the opposite edges: g_i . g_j = -cot / (2 area).
     let cot = -2.0 * frames.share(t) * g[(k + 1) % 3].dot(&g[(k + 2) % 3]);

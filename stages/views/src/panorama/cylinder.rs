@@ -75,6 +75,7 @@ impl Cylinder {
         let layout = self.layout(&pixels, &names, size, cx)?;
         figures(&layout, &names, size, cx);
         let ones = vec![1.0; pixels.len()];
+        cx.check()?;
         let plain = PanoramaCanvas::new(&pixels, &ones, &layout);
         check_size(plain.size)?;
         let gains = if self.exposure {
@@ -106,19 +107,19 @@ impl Cylinder {
         cx: &Context,
     ) -> Result<PanoramaLayout, StageError> {
         let given = self.lens.focal(size)?;
-        let reduced = |longest: usize| -> Vec<HalvedPhoto> {
-            pixels.par_iter().map(|p| HalvedPhoto::new(p, longest)).collect()
+        let reduced = |longest: usize| -> Result<Vec<HalvedPhoto>, StageError> {
+            pixels.par_iter().map(|p| cx.check().map(|()| HalvedPhoto::new(p, longest))).collect()
         };
         let focal = match given {
             Some(focal) => focal,
-            None => match estimated(&reduced(ROUGH_PX), size, cx)? {
+            None => match estimated(&reduced(ROUGH_PX)?, size, cx)? {
                 Some(focal) => focal,
                 // No pair overlaps with any lens: the usual one says which is the first.
                 None => f64::from(size[0]),
             },
         };
         cx.check()?;
-        let photos = reduced(LONGEST_PX);
+        let photos = reduced(LONGEST_PX)?;
         cx.progress(0.5, "registering");
         let laid = |focal: f64| {
             let camera = CylinderCamera::new(focal, size);

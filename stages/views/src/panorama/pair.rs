@@ -84,7 +84,9 @@ pub(super) fn register(
     let (Some(coarse_a), Some(coarse_b)) = (a_levels.levels.last(), b_levels.levels.last()) else {
         return Ok(None);
     };
-    let starts = candidates(coarse_a, coarse_b).into_iter().map(|s| s.map(f64::from));
+    let found = candidates(coarse_a, coarse_b);
+    cx.check()?;
+    let starts = found.into_iter().map(|s| s.map(f64::from));
     let mut starts: Vec<ShiftFit> =
         starts.filter_map(|s| fits(coarse_a, coarse_b, s)).filter(|f| f.overlap >= LEAST_OVERLAP).collect();
     starts.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));

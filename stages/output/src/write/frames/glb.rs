@@ -10,13 +10,13 @@ use crate::write::glb::buffer::Buffer;
 use crate::write::glb::pack;
 use serde_json::{Value, json};
 use toile_core::StageError;
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 
 const FLOAT: u32 = 5126;
 /// The cloth's colour, linear.
 pub(super) const COLOUR: [f32; 3] = [0.51, 0.46, 0.40];
 
-pub(super) fn glb(motion: &Motion, name: &str) -> Result<Vec<u8>, StageError> {
+pub(super) fn glb(motion: &RecordedMotion, name: &str) -> Result<Vec<u8>, StageError> {
     let mut buffer = Buffer::default();
     let mut frames = motion.frames();
     let first = frames.next().unwrap_or(&[]);
@@ -57,7 +57,7 @@ pub(super) fn glb(motion: &Motion, name: &str) -> Result<Vec<u8>, StageError> {
     pack(root.to_string().into_bytes(), buffer.bytes)
 }
 
-fn animation(motion: &Motion, name: &str, buffer: &mut Buffer) -> Value {
+fn animation(motion: &RecordedMotion, name: &str, buffer: &mut Buffer) -> Value {
     let (count, targets) = (motion.len(), motion.len() - 1);
     let times: Vec<f32> = motion.times().map(|t| t as f32).collect();
     let input = scalars(buffer, &times);

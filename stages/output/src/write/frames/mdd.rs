@@ -5,9 +5,9 @@
 
 use super::most;
 use toile_core::StageError;
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 
-pub(super) fn mdd(motion: &Motion) -> Result<Vec<u8>, StageError> {
+pub(super) fn mdd(motion: &RecordedMotion) -> Result<Vec<u8>, StageError> {
     let mut file = Vec::with_capacity(8 + 4 * motion.len() + 12 * motion.positions.len());
     file.extend_from_slice(&most(motion.len())?.to_be_bytes());
     file.extend_from_slice(&most(motion.vertices)?.to_be_bytes());

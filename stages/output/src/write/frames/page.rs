@@ -6,7 +6,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 
 const PAGE: &str = include_str!("page/page.html");
 const SCRIPT: &str = include_str!("page/player.js");
@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("page/player.css");
 /// The largest number of a place.
 const STEPS: f64 = u16::MAX as f64;
 
-pub(super) fn page(motion: &Motion, title: &str) -> Vec<u8> {
+pub(super) fn page(motion: &RecordedMotion, title: &str) -> Vec<u8> {
     let (low, step) = grid(motion);
     let on_grid = |p: &[f32; 3]| -> [u16; 3] {
         std::array::from_fn(|k| ((f64::from(p[k]) - low[k]) / step).round().clamp(0.0, STEPS) as u16)
@@ -37,7 +37,7 @@ pub(super) fn page(motion: &Motion, title: &str) -> Vec<u8> {
 }
 
 /// The least corner of all frames, and the step of the grid, m.
-fn grid(motion: &Motion) -> ([f64; 3], f64) {
+fn grid(motion: &RecordedMotion) -> ([f64; 3], f64) {
     let first = motion.positions.first().copied().unwrap_or_default();
     let join = |pick: fn(f32, f32) -> f32| {
         motion.positions.iter().fold(first, |a, b| std::array::from_fn(|k| pick(a[k], b[k])))

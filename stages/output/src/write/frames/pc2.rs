@@ -5,9 +5,9 @@
 
 use super::most;
 use toile_core::StageError;
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 
-pub(super) fn pc2(motion: &Motion) -> Result<Vec<u8>, StageError> {
+pub(super) fn pc2(motion: &RecordedMotion) -> Result<Vec<u8>, StageError> {
     let (points, samples) = (most(motion.vertices)?, most(motion.len())?);
     let mut file = Vec::with_capacity(32 + 12 * motion.positions.len());
     file.extend_from_slice(b"POINTCACHE2\0");

@@ -1,13 +1,13 @@
 //! A motion with another time between its frames: each lies on the straight way between two that
 //! were recorded. Cost: as many places as are written.
 
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 
 /// Difference below which two times count as equal, as a share of the time between two frames.
 const SAME: f64 = 1e-9;
 
 /// The motion with a frame every so many seconds, from the first to the last one that was recorded.
-pub(super) fn resampled(motion: &Motion, every: f64) -> Motion {
+pub(super) fn resampled(motion: &RecordedMotion, every: f64) -> RecordedMotion {
     let frames: Vec<&[[f32; 3]]> = motion.frames().collect();
     let ratio = every / motion.every;
     let last = frames.len().saturating_sub(1) as f64;
@@ -26,5 +26,5 @@ pub(super) fn resampled(motion: &Motion, every: f64) -> Motion {
             None => positions.extend_from_slice(a),
         }
     }
-    Motion { every, positions, ..motion.clone() }
+    RecordedMotion { every, positions, ..motion.clone() }
 }

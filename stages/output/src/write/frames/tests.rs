@@ -4,16 +4,16 @@
 use super::*;
 use serde_json::Value;
 use std::sync::Arc;
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 use toile_core::testkit::dress;
 
 /// A square of two triangles that rises and turns into the depth.
-fn motion(frames: usize) -> Motion {
+fn motion(frames: usize) -> RecordedMotion {
     let frame = |k: usize| {
         let t = k as f32;
         [[0.0, t, 0.0], [1.0, t, 0.25 * t], [1.0, 1.0 + t, 0.25 * t], [0.0, 1.0 + t, 0.0]]
     };
-    Motion {
+    RecordedMotion {
         every: 0.04,
         end: 0.04 * frames as f64,
         triangles: vec![[0, 1, 2], [0, 2, 3]],
@@ -22,11 +22,11 @@ fn motion(frames: usize) -> Motion {
     }
 }
 
-fn moved(motion: Motion) -> Garment {
+fn moved(motion: RecordedMotion) -> Garment {
     Garment { motion: Some(Arc::new(motion)), ..dress::garment() }
 }
 
-fn written(stage: &Frames, motion: Motion) -> Vec<OutputFile> {
+fn written(stage: &Frames, motion: RecordedMotion) -> Vec<OutputFile> {
     stage.run(&moved(motion), &Context::quiet()).unwrap().0
 }
 
@@ -235,7 +235,7 @@ fn a_hundred_frames_of_five_thousand_triangles_are_a_page_of_less_than_5_mb() {
     let vertices = (rows + 1) * (columns + 1);
     let place = |i: usize| [(i as f32 * 0.37).sin(), (i as f32 * 0.11).cos(), (i as f32 * 0.77).sin()];
     let positions = (0..100 * vertices).map(place).collect();
-    let motion = Motion { every: 0.04, end: 4.0, triangles, vertices, positions };
+    let motion = RecordedMotion { every: 0.04, end: 4.0, triangles, vertices, positions };
     assert_eq!(motion.triangles.len(), 5000);
     let files = written(&Frames { obj: false, usdz: false, ..Frames::default() }, motion);
     let size = file(&files, "motion.html").len();

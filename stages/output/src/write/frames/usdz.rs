@@ -8,16 +8,16 @@ use crate::write::usdz::text::{UNIT, identifiers, list, number, tuple};
 use crate::write::usdz::zip;
 use std::fmt::Write;
 use toile_core::StageError;
-use toile_core::artifact::Motion;
+use toile_core::artifact::RecordedMotion;
 
 /// Decimals of metres.
 const METRES: usize = 5;
 
-pub(super) fn usdz(motion: &Motion, name: &str) -> Result<Vec<u8>, StageError> {
+pub(super) fn usdz(motion: &RecordedMotion, name: &str) -> Result<Vec<u8>, StageError> {
     zip::stored(&[("scene.usda".to_owned(), scene(motion, name).into_bytes())])
 }
 
-fn scene(motion: &Motion, name: &str) -> String {
+fn scene(motion: &RecordedMotion, name: &str) -> String {
     let prim = identifiers([name]).remove(0);
     let (rate, last) = (number(1.0 / motion.every, 6), motion.len().saturating_sub(1));
     let mut s = String::from("#usda 1.0\n(\n    customLayerData = {\n");

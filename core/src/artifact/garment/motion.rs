@@ -9,7 +9,7 @@ use crate::artifact::store::sound::{ensure, finite_figure, indices};
 ///
 /// It has triangles of its own: the garment that carries it may have been cut finer since.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Motion {
+pub struct RecordedMotion {
     /// Time from one frame to the next, s.
     pub every: f64,
     /// Time at which the last solver ended, s: another goes on from there.
@@ -22,7 +22,7 @@ pub struct Motion {
     pub positions: Vec<[f32; 3]>,
 }
 
-impl Motion {
+impl RecordedMotion {
     /// How many frames it has.
     pub fn len(&self) -> usize {
         self.positions.len().checked_div(self.vertices).unwrap_or(0)
