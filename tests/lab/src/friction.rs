@@ -1,7 +1,7 @@
 //! E5: when a belt slips round a drum, when a sheet slips on an incline, and how far it creeps
 //! before.
 
-use toile_cloth::constraint::{Cylinder, Plane};
+use toile_cloth::constraint::{CylinderObstacle, Plane};
 use toile_cloth::energy::{Cloth, DeadLoad, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
@@ -44,7 +44,7 @@ fn slipping_pull(models: Models, layout: Layout, along: usize, mu: f64) -> Resul
     let mut model = Model::of(&sheet).under(Vec3::zeros());
     model = model
         .with_membrane(models, &Cloth::of(&sheet, &[&Fabric::isotropic(DENSITY, STIFFNESS, 0.0, 0.0)]))?;
-    model.obstacles = vec![Box::new(Cylinder::new(Vec3::zeros(), RADIUS, mu)?)];
+    model.obstacles = vec![Box::new(CylinderObstacle::new(Vec3::zeros(), RADIUS, mu)?)];
     model.drag = 300.0;
     let mut state = State::at_rest(mesh.uv.iter().map(|p| wrapped(p.x, p.y, leg, arc)).collect());
     let width = mesh.size.x;

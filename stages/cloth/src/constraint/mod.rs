@@ -6,5 +6,5 @@ mod strain_limit;
 #[cfg(test)]
 mod tests;
 
-pub use obstacle::{Cylinder, Obstacle, Plane, Sphere};
+pub use obstacle::{CylinderObstacle, Obstacle, Plane, Sphere};
 pub use strain_limit::{Provot, StrainLimit};

@@ -63,13 +63,13 @@ impl Obstacle for Plane {
 
 /// An endless cylinder along z through `centre`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cylinder {
+pub struct CylinderObstacle {
     centre: Vec3,
     radius: f64,
     friction: f64,
 }
 
-impl Cylinder {
+impl CylinderObstacle {
     /// Along z.
     ///
     /// # Errors
@@ -81,7 +81,7 @@ impl Cylinder {
     }
 }
 
-impl Obstacle for Cylinder {
+impl Obstacle for CylinderObstacle {
     fn distance(&self, x: &Vec3) -> (f64, Vec3) {
         let mut d = x - self.centre;
         d.z = 0.0;

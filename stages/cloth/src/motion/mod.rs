@@ -24,7 +24,7 @@ pub use contact::Response;
 pub use error::MotionError;
 pub use method::Method;
 pub use recorder::Recorder;
-pub use seams::SeamForce;
+pub use seams::SeamClosing;
 pub use through::Through;
 
 use crate::contact::collision_surface::CollisionSurface;
@@ -85,7 +85,7 @@ pub struct Motion {
     /// Stiffness-proportional damping time, s; of implicit Euler and central differences.
     pub viscosity: f64,
     /// What brings the two sides of a seam together.
-    pub seam_force: SeamForce,
+    pub seam_force: SeamClosing,
     /// The set speed at which they are brought together, m/s.
     pub closing: f64,
     /// Share of friction that acts while seams close.
@@ -142,7 +142,7 @@ impl Default for Motion {
             dt: 1.0 / 240.0,
             drag: 0.0,
             viscosity: 0.0,
-            seam_force: SeamForce::Speed,
+            seam_force: SeamClosing::Speed,
             closing: 0.5,
             sewing_friction: 1.0,
             join_gap: 5e-4,

@@ -3,7 +3,7 @@
 
 use super::contact::{Answer, Pushed, limit_step, nearest_on_body, respond_to_body, respond_to_self_contact};
 use super::near::Near;
-use super::seams::{SeamForce, Seams};
+use super::seams::{SeamClosing, Seams};
 use super::{Motion, MotionError, MotionRun, Progress, Vec3};
 use crate::constraint::Provot;
 use crate::energy::{Air, AirDrag, Band, Bands, Cloth, SeamSprings};
@@ -159,7 +159,7 @@ impl Moving {
         }
         (model.drag, model.viscosity) = (settings.drag, settings.viscosity);
         model.stopper = run.stopper.clone();
-        if let SeamForce::Linear(stiffness) = settings.seam_force
+        if let SeamClosing::Linear(stiffness) = settings.seam_force
             && !pulled.is_empty()
         {
             model = model.with(SeamSprings::new(pulled, stiffness));

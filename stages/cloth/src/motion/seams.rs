@@ -11,7 +11,7 @@ const NEGLIGIBLE: f64 = 0.01;
 
 /// What brings the two sides of a seam together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SeamForce {
+pub enum SeamClosing {
     /// They come nearer at the set speed.
     Speed,
     /// The published force of each pair, in proportion to its gap, N/m. Pairs that have met are
@@ -29,10 +29,10 @@ pub(super) struct Seams {
 
 impl Seams {
     /// Pairs that a force brings together.
-    pub(super) fn new(pairs: Vec<[u32; 2]>, force: SeamForce) -> Self {
+    pub(super) fn new(pairs: Vec<[u32; 2]>, force: SeamClosing) -> Self {
         let held = match force {
-            SeamForce::Speed => Vec::new(),
-            SeamForce::Linear(_) => vec![false; pairs.len()],
+            SeamClosing::Speed => Vec::new(),
+            SeamClosing::Linear(_) => vec![false; pairs.len()],
         };
         Self { pairs, held }
     }

@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-use super::{Method, Motion, MotionError, Moved, Response, SeamForce, Through, Until};
+use super::{Method, Motion, MotionError, Moved, Response, SeamClosing, Through, Until};
 use crate::contact::body::Body;
 use crate::energy::Air;
 use crate::scene::{Phase, Scene, generate};
@@ -420,7 +420,7 @@ fn panels_that_start_in_each_other_and_in_the_body_are_sewn_through() {
     let plain = Motion { method, models, until, drag: 20.0, ..Motion::default() };
     let refused = run(&plain, &scene).err();
     assert!(refused.is_some(), "without it they are refused or stay open");
-    for seam_force in [SeamForce::Speed, SeamForce::Linear(30.0)] {
+    for seam_force in [SeamClosing::Speed, SeamClosing::Linear(30.0)] {
         let motion = Motion { through: Some(Through { coarsest: 100 }), seam_force, ..plain };
         let moved = run(&motion, &scene).unwrap();
         for [a, b] in scene.seams.iter().flat_map(|s| &s.pairs) {

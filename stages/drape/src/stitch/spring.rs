@@ -33,8 +33,8 @@ pub struct SpringStitcher {
     /// What brings the two sides of a seam together: the set speed `closing`, as hands would, or
     /// the published force of each pair of points, in proportion to its gap, N/m; the larger it is
     /// the sooner seams close and the more the cloth stretches. Points that have met stay together.
-    #[param(default = SeamForce::Speed, min = 1e-6, max = 1e6, unit = "N/m")]
-    pub seam_force: SeamForce,
+    #[param(default = SeamPull::Speed, min = 1e-6, max = 1e6, unit = "N/m")]
+    pub seam_force: SeamPull,
     /// Speed at which the two sides of a seam are brought together.
     #[param(default = 0.5, min = 0.001, max = 100.0, unit = "m/s")]
     pub closing: f64,
@@ -69,7 +69,7 @@ pub struct SpringStitcher {
 /// What brings the two sides of a seam together.
 #[choice]
 #[derive(Copy)]
-pub enum SeamForce {
+pub enum SeamPull {
     /// The set speed.
     Speed,
     /// A force in proportion to the gap, N/m.
@@ -98,8 +98,8 @@ impl SpringStitcher {
         };
         let motion = Motion {
             seam_force: match self.seam_force {
-                SeamForce::Speed => motion::SeamForce::Speed,
-                SeamForce::Linear(stiffness) => motion::SeamForce::Linear(stiffness),
+                SeamPull::Speed => motion::SeamClosing::Speed,
+                SeamPull::Linear(stiffness) => motion::SeamClosing::Linear(stiffness),
             },
             closing: self.closing,
             sewing_friction: self.friction,
