@@ -51,6 +51,7 @@ impl CentralDifferences {
     ) -> Result<Garment, StageError> {
         let models = models(self.membrane, self.bending);
         let course = self.motion.course(Method::CentralDifferences { least: 0.0 }, models);
+        let garment = &*self.motion.sewn_first(garment, collider, cx)?;
         drape(&course, garment, garment, collider, phases, cx)
     }
 

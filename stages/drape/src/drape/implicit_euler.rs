@@ -57,6 +57,7 @@ impl ImplicitEuler {
     ) -> Result<Garment, StageError> {
         let method = Method::ImplicitEuler { tolerance: self.tolerance, relative: self.conjugate_gradients };
         let course = self.motion.course(method, models(self.membrane, self.bending));
+        let garment = &*self.motion.sewn_first(garment, collider, cx)?;
         drape(&course, garment, garment, collider, phases, cx)
     }
 

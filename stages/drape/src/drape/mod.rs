@@ -11,6 +11,7 @@ mod mixed_precision;
 mod models;
 mod motion;
 mod projective;
+mod sew_first;
 mod soften;
 mod spring;
 mod starts;

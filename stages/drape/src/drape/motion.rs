@@ -253,7 +253,6 @@ impl InTime {
             dt: self.dt,
             drag: self.drag,
             join_gap: self.join_gap.metres(),
-            through: self.sewn.engine(),
             until: Until::Rest { speed: self.speed, energy: SETTLED, longest: self.longest },
             budget: Duration::from_secs_f64(self.time_limit),
             ..Motion::default()

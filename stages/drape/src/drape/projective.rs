@@ -47,6 +47,7 @@ impl Projective {
     ) -> Result<Garment, StageError> {
         let method = Method::Projective { iterations: self.iterations };
         let course = self.motion.course(method, Models::DEFAULT);
+        let garment = &*self.motion.sewn_first(garment, collider, cx)?;
         drape(&course, garment, garment, collider, phases, cx)
     }
 

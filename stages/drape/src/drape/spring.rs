@@ -10,6 +10,7 @@ use super::by_place;
 use super::motion::{Course, InTime, SewThrough, drape};
 use super::soften::{damping, easy_strain, softened, springs};
 use crate::engine::Motions;
+use crate::stitch::SewingFor;
 use toile_cloth::motion::{Calming, Method, Motion};
 use toile_core::decide::Decision;
 use toile_core::prelude::*;
@@ -82,13 +83,15 @@ impl SpringDraper {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         garment.check_solvable()?;
+        let sewing = SewingFor { longest: "time_limit", wall: None, has_stiffest: false };
+        let garment =
+            &*self.sewn.sewn_first(garment, collider, (self.time_limit, self.frames), &sewing, cx)?;
         let time = InTime {
             gravity: self.gravity,
             dt: self.dt,
             drag: self.damping + damping(garment),
             speed: self.speed,
             longest: self.time_limit,
-            sewn: self.sewn,
             frames: self.frames,
             ..InTime::default()
         };

@@ -49,6 +49,7 @@ impl Xpbd {
     ) -> Result<Garment, StageError> {
         let method = Method::Xpbd { substeps: self.substeps };
         let course = self.motion.course(method, Models::DEFAULT);
+        let garment = &*self.motion.sewn_first(garment, collider, cx)?;
         drape(&course, garment, garment, collider, phases, cx)
     }
 

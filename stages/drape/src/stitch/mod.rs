@@ -4,6 +4,7 @@ mod spring;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use spring::SewingFor;
 pub use spring::SpringStitcher;
 use toile_core::{Migration, Registry};
 

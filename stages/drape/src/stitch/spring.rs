@@ -76,6 +76,16 @@ pub enum SeamPull {
     Linear(f64),
 }
 
+/// The stage for which it sews.
+pub(crate) struct SewingFor {
+    /// What the longest simulated time is called there.
+    pub(crate) longest: &'static str,
+    /// Its limit of wall time, s.
+    pub(crate) wall: Option<f64>,
+    /// Whether `stiffest` can be set there.
+    pub(crate) has_stiffest: bool,
+}
+
 #[stage]
 impl SpringStitcher {
     /// Runs the stage.
@@ -85,6 +95,17 @@ impl SpringStitcher {
         collider: Option<&Collider>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
+        self.sew(garment, collider, &SewingFor { longest: "time_limit", wall: None, has_stiffest: true }, cx)
+    }
+
+    /// Sews for a stage.
+    pub(crate) fn sew(
+        &self,
+        garment: &Garment,
+        collider: Option<&Collider>,
+        sewing: &SewingFor,
+        cx: &Context,
+    ) -> Result<Garment, StageError> {
         garment.check_solvable()?;
         let time = InTime {
             gravity: 0.0,
@@ -92,7 +113,7 @@ impl SpringStitcher {
             drag: self.damping + damping(garment),
             longest: self.time_limit,
             join_gap: self.seam_distance,
-            sewn: self.sewn,
+            time_limit: sewing.wall.unwrap_or(InTime::default().time_limit),
             frames: self.frames,
             ..InTime::default()
         };
@@ -101,16 +122,17 @@ impl SpringStitcher {
                 SeamPull::Speed => motion::SeamClosing::Speed,
                 SeamPull::Linear(stiffness) => motion::SeamClosing::Linear(stiffness),
             },
+            through: self.sewn.engine(),
             closing: self.closing,
             sewing_friction: self.friction,
             until: Until::Sewn { longest: self.time_limit },
             ..time.motion(Method::CentralDifferences { least: self.least_step }, springs())
         };
         let can = Motions {
-            longest: ("time_limit", self.time_limit),
+            longest: (sewing.longest, self.time_limit),
             closing: motion.closing,
-            time_limit: None,
-            stiffest: Some(self.stiffest),
+            time_limit: sewing.wall,
+            stiffest: sewing.has_stiffest.then_some(self.stiffest),
         };
         let course = Course { time: &time, motion, can };
         moved(&course, &softened(garment, self.stiffest), garment, collider, None, cx)
