@@ -9,8 +9,8 @@
 use super::by_place;
 use super::motion::{Course, InTime, SewThrough, drape};
 use super::soften::{damping, easy_strain, softened, springs};
+use super::spring_sewing::SewingFor;
 use crate::engine::Motions;
-use crate::stitch::SewingFor;
 use toile_cloth::motion::{Calming, Method, Motion};
 use toile_core::decide::Decision;
 use toile_core::prelude::*;

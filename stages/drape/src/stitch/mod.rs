@@ -4,7 +4,6 @@ mod spring;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use spring::SewingFor;
 pub use spring::SpringStitcher;
 use toile_core::{Migration, Registry};
 

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::SpringStitcher;
+use crate::drape::SpringSewing;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use toile_core::prelude::*;
@@ -109,9 +110,13 @@ fn a_body_too_wide_for_the_panels_is_named_with_the_gap() {
     );
 }
 
+fn stopped_after(time_limit: f64) -> SpringStitcher {
+    SpringStitcher { sewing: SpringSewing { time_limit, ..SpringSewing::default() } }
+}
+
 #[test]
 fn a_seam_that_is_open_at_the_limit_of_time_is_named() {
-    let stage = SpringStitcher { time_limit: 0.01, ..SpringStitcher::default() };
+    let stage = stopped_after(0.01);
     let e = stage.run(&tube(0.05, &plain(2000.0, 50.0, 1e-5)), None, &Context::quiet()).unwrap_err();
     assert_eq!(e.code, ErrorCode::StitchingError);
     assert_eq!(
@@ -123,7 +128,7 @@ fn a_seam_that_is_open_at_the_limit_of_time_is_named() {
         e.detail.as_deref(),
         Some("seam 'front.right + back.right' stays open by 94.0 mm after 0.01 s")
     );
-    let longer = SpringStitcher { time_limit: 0.5, ..SpringStitcher::default() };
+    let longer = stopped_after(0.5);
     assert!(
         longer.run(&tube(0.05, &plain(2000.0, 50.0, 1e-5)), None, &Context::quiet()).is_ok(),
         "the help helps"
