@@ -37,7 +37,7 @@ fn published_experiments_agree_with_their_goldens() {
     let files = fs::read_dir(root().join("pipelines/published")).unwrap().map(|e| e.unwrap().path());
     let mut files: Vec<_> = files.filter(|p| p.extension().is_some_and(|e| e == "ron")).collect();
     files.sort();
-    assert!(files.len() >= 3, "{files:?}");
+    assert!(files.len() >= 6, "{files:?}");
     for file in files {
         let answer = toile(&["golden", "check", &file.display().to_string(), "--out", &out]);
         assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);

@@ -1,4 +1,5 @@
-//! Pictures from pictures, held against the truth of the scene that their samples are drawn from.
+//! Published experiments: pictures from pictures, held against the truth of the scene that their
+//! samples are drawn from, and cloth, held against exact cases and the static solver.
 
 use image::RgbImage;
 use serde_json::Value;
@@ -85,4 +86,118 @@ fn a_light_field_is_better_the_more_photos_it_has() {
     };
     let [all, nine, four] = [1, 2, 4].map(of);
     assert!(all > 26.0 && all > nine + 1.0 && nine > four, "{all} {nine} {four}");
+}
+
+/// The second stage's figures are of no interest here; a garment's files are.
+fn run_garment(name: &str, settings: &[&str], out: &Path) {
+    let (file, out) = (pipeline(&format!("published/{name}.ron")), out.display().to_string());
+    let mut arguments = vec!["run", &file, "--out", &out];
+    settings.iter().for_each(|s| arguments.extend(["--set", s]));
+    let answer = toile(&arguments);
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+}
+
+#[test]
+fn pieces_sewn_and_flattened_by_springs_keep_area_and_outline() {
+    let dir = tempfile::tempdir().unwrap();
+    run_garment("f_onepiece", &[], dir.path());
+    let table: Value = serde_json::from_slice(&fs::read(dir.path().join("flat.json")).unwrap()).unwrap();
+    let pieces = table["pieces"].as_array().unwrap();
+    assert_eq!(pieces.len(), 8);
+    for piece in pieces {
+        let (name, cut) = (&piece["name"], &piece["true_piece"]);
+        for error in [
+            &piece["area_error_3d_to_2d"],
+            &piece["area_error_2d_to_3d"],
+            &piece["outline_error_3d_to_2d"],
+            &piece["outline_error_2d_to_3d"],
+            &cut["area_error"],
+            &cut["outline_error"],
+        ] {
+            let error = error.as_f64().unwrap();
+            assert!(error.abs() <= 0.01, "{name}: {error}");
+        }
+    }
+}
+
+/// The vertices of `skirt.obj`, m.
+fn vertices(folder: &Path) -> Vec<[f64; 3]> {
+    let text = fs::read_to_string(folder.join("skirt.obj")).unwrap();
+    let point = |line: &str| -> [f64; 3] {
+        let numbers: Vec<f64> = line.split_whitespace().skip(1).map(|n| n.parse().unwrap()).collect();
+        [numbers[0], numbers[1], numbers[2]]
+    };
+    text.lines().filter(|l| l.starts_with("v ")).map(point).collect()
+}
+
+#[test]
+fn a_skirt_of_springs_hangs_where_the_static_solver_has_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let [springs, exact] = ["springs", "exact"].map(|name| dir.path().join(name));
+    run_garment("c_skirt", &[], &springs);
+    run_garment("c_skirt", &["stages.SpringDraper=StaticEquilibrium()"], &exact);
+    let (a, b) = (vertices(&springs), vertices(&exact));
+    let apart = |(p, q): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+    let mut apart: Vec<f64> = a.iter().zip(&b).map(apart).collect();
+    apart.sort_by(f64::total_cmp);
+    let (median, most) = (apart[apart.len() / 2], apart[apart.len() * 95 / 100]);
+    println!("half of the points within {median:.4} m, 95 of 100 within {most:.4} m");
+    assert!(a.len() == b.len() && median < 0.03 && most < 0.08, "{median} {most}");
+}
+
+/// Cells of the blown panel along its sides.
+const CELLS: usize = 16;
+
+/// The first zero of the Bessel function of the first kind and order 0.
+const BESSEL_ZERO: f64 = 2.404_825_557_695_773;
+
+/// That function, by its series.
+fn bessel(x: f64) -> f64 {
+    let term = |k: i32| (1..=k).fold(1.0, |t, n| -t * (0.5 * x).powi(2) / f64::from(n * n));
+    (0..30).map(term).sum()
+}
+
+/// Height below the upper edge and way with the wind, m, of the points from the lower edge up, in
+/// each frame.
+fn middle_of_panel(pc2: &[u8]) -> Vec<Vec<[f64; 2]>> {
+    let word = |at: usize| <[u8; 4]>::try_from(&pc2[at..at + 4]).unwrap();
+    let points = u32::from_le_bytes(word(16)) as usize;
+    let frames = u32::from_le_bytes(word(28)) as usize;
+    let number = |frame: usize, point: usize, axis: usize| {
+        f64::from(f32::from_le_bytes(word(32 + 4 * (3 * (frame * points + point) + axis))))
+    };
+    let column = |row: usize| row * (CELLS + 1) + CELLS / 2;
+    let frame = |f: usize| {
+        let top = number(f, column(CELLS), 1);
+        (0..=CELLS).map(|row| [top - number(f, column(row), 1), number(f, column(row), 2)]).collect()
+    };
+    (0..frames).map(frame).collect()
+}
+
+#[test]
+fn a_blown_panel_hangs_at_the_exact_slant_and_swings_with_the_exact_period() {
+    let dir = tempfile::tempdir().unwrap();
+    run_garment("t_blown", &["stages.Frames.usdz=false", "stages.Frames.obj=false"], dir.path());
+    let frames = middle_of_panel(&fs::read(dir.path().join("motion.pc2")).unwrap());
+    let every = 0.04;
+
+    // Across a flat sheet at the slant a, weight and wind balance where w sin a = q cos^2 a.
+    let (weight, wind) = (0.15 * 9.81, 0.5 * 1.2 * 1.17 * 0.5 * 0.5);
+    let sine = (0..60).fold(0.0, |s: f64, _| wind / weight * (1.0 - s * s));
+    let [down, along] = frames[(4.0 / every) as usize][0];
+    let (slant, exact) = (along.atan2(down).to_degrees(), sine.asin().to_degrees());
+    println!("slant {slant:.2} degrees, exact {exact:.2}");
+    assert!((slant - exact).abs() < 0.1, "{slant} {exact}");
+
+    // A hanging chain: w = z/2 sqrt(g/L), J0(z) = 0; the first mode is J0(z sqrt(s/L)) from below.
+    let mode: Vec<f64> =
+        (0..=CELLS).map(|row| bessel(BESSEL_ZERO * (row as f64 / CELLS as f64).sqrt())).collect();
+    let swing = |frame: &Vec<[f64; 2]>| frame.iter().zip(&mode).map(|([_, z], m)| z * m).sum::<f64>();
+    let ways: Vec<f64> = frames.iter().map(swing).collect();
+    let zero = |k: usize| (ways[k] * ways[k + 1] < 0.0).then(|| k as f64 + ways[k] / (ways[k] - ways[k + 1]));
+    let zeros: Vec<f64> = (101..ways.len() - 1).filter_map(zero).collect();
+    let period = 2.0 * every * (zeros[zeros.len() - 1] - zeros[0]) / (zeros.len() - 1) as f64;
+    let exact = std::f64::consts::TAU / (0.5 * BESSEL_ZERO * 9.81f64.sqrt());
+    println!("period {period:.4} s, exact {exact:.4} s");
+    assert!(zeros.len() >= 8 && (period / exact - 1.0).abs() < 0.01, "{period} {exact}");
 }
