@@ -40,7 +40,7 @@ fn cloth_in_the_air_falls_until_the_time_is_over_and_says_so() {
     assert_eq!(warnings.len(), 1);
     assert_eq!(
         warnings[0],
-        "the cloth still moves by 899.3 mm/s after 0.1 s, at rest it has less than 20.0 mm/s: allow a longer motion"
+        "the cloth still moves by 905.9 mm/s after 0.1 s, at rest it has less than 20.0 mm/s: allow a longer motion"
     );
 }
 

@@ -126,7 +126,7 @@ fn a_seam_that_is_open_at_the_limit_of_time_is_named() {
     assert_eq!(e.hint.as_deref(), Some("sew for longer: `--set 'stages.test.time_limit=0.5'`"));
     assert_eq!(
         e.detail.as_deref(),
-        Some("seam 'front.right + back.right' stays open by 94.0 mm after 0.01 s")
+        Some("seam 'front.right + back.right' stays open by 93.7 mm after 0.01 s")
     );
     let longer = stopped_after(0.5);
     assert!(
