@@ -42,7 +42,7 @@ pub(super) fn dense(from: &RgbImage, to: &RgbImage, cx: &Context) -> Result<Dens
     let [of_from, of_to] = [from, to].map(|p| Pyramid::of(&super::photos::opaque(p)));
     let blocks = motion(&of_from, &of_to, cx)?;
     let (width, height) = (from.width() as usize, from.height() as usize);
-    let plane = GreyPlane::of(from);
+    let plane = GreyPlane::of(from, cx)?;
     let row = |row: usize| {
         cx.check()?;
         let mut lines = vec![[0f32; 2]; width * BLOCK.min(height - (row * BLOCK).min(height))];

@@ -103,7 +103,7 @@ impl<'a> DepthScene<'a> {
         [far, near]: [f64; 2],
         cx: &Context,
     ) -> Result<Self, StageError> {
-        let mut planes = photos.map(GreyPlane::of);
+        let mut planes = [GreyPlane::of(photos[0], cx)?, GreyPlane::of(photos[1], cx)?];
         let mut factor = 1.0;
         while planes[0].width.max(planes[0].height) > LONGEST_PX {
             planes = [planes[0].half(), planes[1].half()];

@@ -108,7 +108,7 @@ impl Cylinder {
     ) -> Result<PanoramaLayout, StageError> {
         let given = self.lens.focal(size)?;
         let reduced = |longest: usize| -> Result<Vec<HalvedPhoto>, StageError> {
-            pixels.par_iter().map(|p| cx.check().map(|()| HalvedPhoto::new(p, longest))).collect()
+            pixels.par_iter().map(|p| HalvedPhoto::new(p, longest, cx)).collect()
         };
         let focal = match given {
             Some(focal) => focal,

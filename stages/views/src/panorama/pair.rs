@@ -40,23 +40,33 @@ pub(super) struct HalvedPhoto {
 
 impl HalvedPhoto {
     /// Of a photo, at most `longest` px long.
-    pub(super) fn new(photo: &image::RgbImage, longest: usize) -> HalvedPhoto {
+    ///
+    /// # Errors
+    /// When the run has been stopped.
+    pub(super) fn new(
+        photo: &image::RgbImage,
+        longest: usize,
+        cx: &Context,
+    ) -> Result<HalvedPhoto, StageError> {
         let search = SEARCH_PX.min(longest.div_ceil(2));
-        let (mut plane, mut halvings) = (GreyPlane::of(photo), 0);
+        let (mut plane, mut halvings) = (GreyPlane::of(photo, cx)?, 0);
         while plane.width.max(plane.height) > longest {
+            cx.check()?;
             (plane, halvings) = (plane.half(), halvings + 1);
         }
-        HalvedPhoto { halvings, search, plane }
+        Ok(HalvedPhoto { halvings, search, plane })
     }
 
     /// Its detail on the cylinder, from the finest picture to the coarsest.
-    fn unrolled(&self, camera: CylinderCamera) -> UnrolledPhoto {
+    fn unrolled(&self, camera: CylinderCamera, cx: &Context) -> Result<UnrolledPhoto, StageError> {
         let raw = camera.halved(self.halvings).unrolled(&self.plane);
+        cx.check()?;
         let mut levels = vec![detail(&raw)];
         while let Some(last) = levels.last().filter(|l| l.width.max(l.height) > self.search) {
+            cx.check()?;
             levels.push(last.half());
         }
-        UnrolledPhoto { raw, levels }
+        Ok(UnrolledPhoto { raw, levels })
     }
 }
 
@@ -79,7 +89,7 @@ pub(super) fn register(
     camera: CylinderCamera,
     cx: &Context,
 ) -> Result<Option<ShiftFit>, StageError> {
-    let (a_levels, b_levels) = (a.unrolled(camera), b.unrolled(camera));
+    let (a_levels, b_levels) = (a.unrolled(camera, cx)?, b.unrolled(camera, cx)?);
     cx.check()?;
     let (Some(coarse_a), Some(coarse_b)) = (a_levels.levels.last(), b_levels.levels.last()) else {
         return Ok(None);

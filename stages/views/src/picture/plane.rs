@@ -1,5 +1,7 @@
 //! A grey picture as numbers, with what of it is seen.
 
+use toile_core::{Context, StageError};
+
 /// Brightness of each pixel, row by row; where nothing is seen its value is not used.
 ///
 /// Pixel centres lie at whole coordinates.
@@ -17,10 +19,17 @@ pub struct GreyPlane {
 
 impl GreyPlane {
     /// Brightness (ITU-R BT.601) of a photo.
-    pub fn of(photo: &image::RgbImage) -> GreyPlane {
-        let levels: Vec<f32> = photo.pixels().map(|p| brightness(p.0.map(f32::from))).collect();
+    ///
+    /// # Errors
+    /// When the run has been stopped.
+    pub fn of(photo: &image::RgbImage, cx: &Context) -> Result<GreyPlane, StageError> {
         let (width, height) = (photo.width() as usize, photo.height() as usize);
-        GreyPlane { width, height, seen: vec![true; levels.len()], levels }
+        let mut levels = Vec::with_capacity(width * height);
+        for row in photo.rows() {
+            cx.check()?;
+            levels.extend(row.map(|p| brightness(p.0.map(f32::from))));
+        }
+        Ok(GreyPlane { width, height, seen: vec![true; levels.len()], levels })
     }
 
     /// Half as wide and high: means of two by two pixels of which all are seen.
@@ -74,9 +83,13 @@ mod tests {
     use super::*;
     use image::{Rgb, RgbImage};
 
+    fn of(photo: &RgbImage) -> GreyPlane {
+        GreyPlane::of(photo, &Context::quiet()).unwrap()
+    }
+
     #[test]
     fn levels_between_pixels_are_bilinear_and_none_beyond_the_border() {
-        let plane = GreyPlane::of(&RgbImage::from_fn(4, 3, |x, y| Rgb([(10 * x + 40 * y) as u8; 3])));
+        let plane = of(&RgbImage::from_fn(4, 3, |x, y| Rgb([(10 * x + 40 * y) as u8; 3])));
         assert!((plane.at(1.5, 0.25).unwrap() - 25.0).abs() < 1e-3);
         assert!((plane.at(3.0, 2.0).unwrap() - 110.0).abs() < 1e-3);
         assert_eq!([plane.at(3.1, 0.0), plane.at(-0.1, 0.0), plane.at(f64::NAN, 0.0)], [None; 3]);
@@ -87,7 +100,7 @@ mod tests {
 
     #[test]
     fn what_is_not_seen_gives_no_level() {
-        let mut plane = GreyPlane::of(&RgbImage::new(4, 4));
+        let mut plane = of(&RgbImage::new(4, 4));
         plane.seen[5] = false;
         assert_eq!(plane.at(0.5, 0.5), None);
         assert_eq!(plane.at(2.5, 2.5), Some(0.0));
