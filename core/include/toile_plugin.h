@@ -129,9 +129,9 @@ typedef struct toile_collider_card {
     double thickness; /* metres */
     double friction;
     double restitution;
-    double penalty; /* N/m; NAN where contacts are resolved by impulses */
+    double penalty; /* coefficient of the force that pushes cloth off the body; NAN where contacts are resolved by impulses */
     uint32_t self_collision;
-    uint32_t reserved;
+    uint32_t penalty_law; /* 0: N/m times how much nearer than the thickness cloth is; 1: N times exp(-distance / thickness) */
 } toile_collider_card;
 
 struct toile_collider;

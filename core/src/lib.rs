@@ -32,8 +32,7 @@
 //! assert_eq!(registry.card("Invert").map(|c| c.params.len()), Some(1));
 //! ```
 
-// The macros' expansion names this crate; the tests of this crate use them too.
-#[cfg(test)]
+// The macros' expansion names this crate, which uses them too.
 extern crate self as toile_core;
 
 pub mod artifact;

@@ -2,6 +2,7 @@
 
 use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
 use crate::artifact::store::sound::{ensure, positive};
+use crate::choice;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -48,8 +49,18 @@ pub struct ColliderCard {
     pub restitution: f64,
     /// True where cloth against itself is looked for.
     pub self_collision: bool,
-    /// Stiffness of the penalty response, N/m; `None` where contacts are resolved by impulses.
-    pub penalty: Option<f64>,
+    /// The force that pushes cloth off the body; `None` where contacts are resolved by impulses.
+    pub penalty: Option<Penalty>,
+}
+
+/// The force with which a body pushes off cloth that is near it, outwards.
+#[choice]
+#[derive(Copy)]
+pub enum Penalty {
+    /// c (thickness - distance) within the thickness: the stiffness c, N/m per vertex.
+    Linear(f64),
+    /// c exp(-distance / thickness): the force c at the skin, N per vertex.
+    Exponential(f64),
 }
 
 /// The mesh of a body, lent: closed, facing outwards.
@@ -145,7 +156,12 @@ impl Artifact for Collider {
         let Collider { scheme, signature } = self;
         let ColliderCard { thickness, friction, restitution, self_collision, penalty } = scheme.card();
         d.text(Self::KIND.0).text(signature).floats([thickness, friction, restitution]);
-        d.count(usize::from(self_collision)).count(usize::from(penalty.is_some())).floats(penalty);
+        let (law, coefficient) = match penalty {
+            None => (0, None),
+            Some(Penalty::Linear(c)) => (1, Some(c)),
+            Some(Penalty::Exponential(c)) => (2, Some(c)),
+        };
+        d.count(usize::from(self_collision)).count(law).floats(coefficient);
     }
 
     fn measures(&self) -> Measures {
@@ -159,7 +175,9 @@ impl Artifact for Collider {
         positive("thickness", card.thickness)?;
         ensure(card.friction.is_finite() && card.friction >= 0.0, || {
             format!("the friction is {}, it must be at least 0", card.friction)
-        })
+        })?;
+        let Some(Penalty::Linear(c) | Penalty::Exponential(c)) = card.penalty else { return Ok(()) };
+        ensure(c.is_finite() && c >= 0.0, || format!("the penalty is {c}, it must be at least 0"))
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -31,7 +31,7 @@ pub mod store;
 pub mod stored;
 
 pub use body::{Body, Landmark};
-pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact, Surface};
+pub use collider::{BodyContact, Collide, Collider, ColliderCard, Penalty, SelfContact, Surface};
 pub use fabric::{Curve, Fabric};
 pub use figures::{
     Figures, GarmentFigures, GirthFigures, PanelFigures, PenetrationFigures, Shortfall, StrainFigures,

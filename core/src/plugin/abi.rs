@@ -371,12 +371,14 @@ pub struct ColliderCard {
     pub friction: f64,
     /// 0 to 1.
     pub restitution: f64,
-    /// N/m; not a number where contacts are resolved by impulses.
+    /// The coefficient of the force that pushes cloth off the body; not a number where contacts
+    /// are resolved by impulses.
     pub penalty: f64,
     /// Not zero where cloth against itself is looked for.
     pub self_collision: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// 0 for a force in proportion to how much nearer than the thickness cloth is, N/m; 1 for one
+    /// that falls with exp(-distance / thickness), N.
+    pub penalty_law: u32,
 }
 
 /// A collision scheme, called in the solvers' inner loops, from any thread and from several at

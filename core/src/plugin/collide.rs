@@ -9,10 +9,14 @@ use super::abi::{self, Cloth, Sink, Text};
 use super::guard::{guarded, last_failure, meaning};
 use super::inside::inside;
 use super::view::{list, text};
-use crate::artifact::{BodyContact, Collide, Collider, ColliderCard, Point3, SelfContact};
+use crate::artifact::{BodyContact, Collide, Collider, ColliderCard, Penalty, Point3, SelfContact};
 use crate::{ErrorCode, StageError};
 use std::ffi::c_void;
 use std::sync::Arc;
+
+/// The penalty laws as they cross.
+const LINEAR: u32 = 0;
+const EXPONENTIAL: u32 = 1;
 
 /// A collider of this side as a table; the other side calls its `destroy`.
 pub fn lend(collider: &Collider) -> abi::Collider {
@@ -67,11 +71,15 @@ unsafe fn fill<T: Copy>(sink: *const Sink, found: &[T]) -> Result<(), String> {
 unsafe extern "C" fn card(this: *const c_void, out: *mut abi::ColliderCard) -> i32 {
     guarded(|| {
         let card = unsafe { scheme(this) }.card();
-        let penalty = card.penalty.unwrap_or(f64::NAN);
+        let (penalty_law, penalty) = match card.penalty {
+            None => (LINEAR, f64::NAN),
+            Some(Penalty::Linear(c)) => (LINEAR, c),
+            Some(Penalty::Exponential(c)) => (EXPONENTIAL, c),
+        };
         let (thickness, friction, restitution) = (card.thickness, card.friction, card.restitution);
         let self_collision = u32::from(card.self_collision);
         let card =
-            abi::ColliderCard { thickness, friction, restitution, penalty, self_collision, reserved: 0 };
+            abi::ColliderCard { thickness, friction, restitution, penalty, self_collision, penalty_law };
         unsafe { out.write(card) };
         Ok(())
     })
@@ -213,12 +221,18 @@ pub unsafe fn take(
         return Err("the collider does not give its settings".into());
     }
     let signature = unsafe { text(collider.signature)? }.to_owned();
+    let penalty = match (card.penalty.is_nan(), card.penalty_law) {
+        (true, _) => None,
+        (_, LINEAR) => Some(Penalty::Linear(card.penalty)),
+        (_, EXPONENTIAL) => Some(Penalty::Exponential(card.penalty)),
+        (_, law) => return Err(format!("the collider has the penalty law {law}, it must be 0 or 1")),
+    };
     let card = ColliderCard {
         thickness: card.thickness,
         friction: card.friction,
         restitution: card.restitution,
         self_collision: card.self_collision != 0,
-        penalty: (!card.penalty.is_nan()).then_some(card.penalty),
+        penalty,
     };
     let foreign = ForeignCollider { collider, table, card, owner, _library: library };
     Ok(Collider { scheme: Arc::new(foreign), signature })

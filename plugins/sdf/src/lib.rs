@@ -55,9 +55,11 @@ pub struct SdfCollider {
     /// True where cloth is kept out of itself.
     #[param(default = true, trades)]
     pub self_collision: bool,
-    /// Stiffness of the penalty response; without it contacts are resolved by impulses.
-    #[param(default = None, min = 0, max = 1e6, unit = "N/m")]
-    pub penalty: Option<f64>,
+    /// A force that pushes cloth off the body, for solvers that step in time; without it contacts
+    /// are resolved by impulses. `Linear(c)`: c (thickness - distance) within the thickness, c in
+    /// N/m per vertex. `Exponential(c)`: c exp(-distance / thickness), c in N per vertex.
+    #[param(default = None, min = 0, max = 1e6)]
+    pub penalty: Option<Penalty>,
 }
 
 #[stage]

@@ -16,7 +16,9 @@ use toile_core::{Card, Inputs, Registry};
 /// Parameters whose values no rule makes.
 const VALUES: &[(&str, &str)] = &[
     ("Arap.darts", "Auto(max_strain: 0.02)"),
+    ("Arrange.key_points", "[(edge: \"front.hem\", at: 0.5, landmark: \"neck_left\")]"),
     ("Block.waist", "Gathered(fullness: 1.5, band: \"3 cm\")"),
+    ("BvhCollider.penalty", "Linear(50)"),
     ("Cloth.warp", "[(0.02, 90.0), (0.03, 490.0)]"),
     ("Cloth.weft", "[(0.03, 90.0), (0.06, 490.0)]"),
     ("FabricTexturer.colours", "[\"#7a2f3a\"]"),
@@ -29,10 +31,12 @@ const VALUES: &[(&str, &str)] = &[
     ("Local.method", "Mean(offset: 4.0)"),
     ("NeighbourhoodMean.pixel", "\"2 mm\""),
     ("Outfit.garments", "[\"pinafore_specification.json\", \"shirt_specification.json\"]"),
+    ("ParryCollider.penalty", "Linear(50)"),
     ("Photos.photos", "{\"front\": (file: \"another.jpg\", width: \"52 cm\")}"),
     ("Seams.seams", "[Match(\"front.side_left\", \"back.side_right\")]"),
     ("SpringFlatten.darts", "Auto(max_strain: 0.02)"),
     ("SymmetricDirichlet.darts", "Auto(max_strain: 0.02)"),
+    ("Unpick.edges", "[\"front.side_right\"]"),
     ("Woven.darts", "Auto(max_strain: 0.02)"),
 ];
 

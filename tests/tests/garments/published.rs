@@ -202,3 +202,52 @@ fn a_blown_panel_hangs_at_the_exact_slant_and_swings_with_the_exact_period() {
     println!("period {period:.4} s, exact {exact:.4} s");
     assert!(zeros.len() >= 8 && (period / exact - 1.0).abs() < 0.01, "{period} {exact}");
 }
+
+#[test]
+fn every_volume_finds_the_same_pairs_and_tighter_ones_make_fewer_tests() {
+    let dir = tempfile::tempdir().unwrap();
+    run_garment("t_volumes", &[], dir.path());
+    let table = fs::read_to_string(dir.path().join("volumes.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let tests = |name: &str| -> u64 { rows.iter().find(|row| row[0] == name).unwrap()[3].parse().unwrap() };
+    println!("{table}");
+    assert_eq!(rows.len(), 6);
+    assert!(rows.iter().all(|row| row[5] == rows[0][5]), "{table}");
+    assert!(tests("kdop26") < tests("kdop14") && tests("kdop14") < tests("aabb"), "{table}");
+    assert!(tests("aabb") < tests("sphere"), "{table}");
+    // Boxes that are put together from boxes of other directions are looser than those along the
+    // axes.
+    assert!(tests("obb") > tests("aabb"), "{table}");
+}
+
+/// The six darts of the dress, left open.
+const OPEN_DARTS: &str = "stages.Unpick.edges=[\"front.bust_left_low\", \"front.bust_right_low\", \
+    \"front.dart_left_inner\", \"front.dart_right_inner\", \"back.dart_left_inner\", \"back.dart_right_inner\"]";
+
+/// The ease at a level by `fit.json`, m.
+fn ease(folder: &Path, level: &str) -> f64 {
+    let fit: Value = serde_json::from_slice(&fs::read(folder.join("fit.json")).unwrap()).unwrap();
+    fit["ease"][level]["ease"].as_f64().unwrap()
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn darts_take_in_the_bodice() {
+    let dir = tempfile::tempdir().unwrap();
+    let [sewn, open] = ["sewn", "open"].map(|name| dir.path().join(name));
+    run_garment("c_darts", &[], &sewn);
+    run_garment("c_darts", &[OPEN_DARTS], &open);
+    let more = ease(&open, "bust") - ease(&sewn, "bust");
+    println!("open darts: {more:.4} m more ease at the bust");
+    assert!(more > 0.002 && more < 0.04, "{more}");
+}
+
+#[test]
+fn photos_from_six_sides_show_the_garment_from_a_seventh() {
+    let dir = tempfile::tempdir().unwrap();
+    run_garment("t_texture", &[], dir.path());
+    let [made, truth] = [dir.path().join("turn_045.png"), sample("dressed/truth.jpg")].map(picture);
+    let score = psnr(&made, &truth, |_, _| true).unwrap();
+    println!("{score:.1} dB");
+    assert!(score > 30.0, "{score} dB");
+}

@@ -3,7 +3,7 @@
 use crate::plugins::kit::{make, registry_with, run};
 use std::sync::Arc;
 use toile_core::artifact::{
-    Artifact, Body, Curve, Fabric, Garment, GarmentPanel, Point2, Point3, SolveStatus, Vector3,
+    Artifact, Body, Curve, Fabric, Garment, GarmentPanel, Penalty, Point2, Point3, SolveStatus, Vector3,
 };
 use toile_core::{PortValue, Registry};
 
@@ -66,7 +66,11 @@ pub(crate) fn garment() -> Garment {
 }
 
 fn collider(registry: &Registry, name: &str) -> Arc<dyn Artifact> {
-    let stage = make(registry, name, "()");
+    collider_with(registry, name, "()")
+}
+
+fn collider_with(registry: &Registry, name: &str, params: &str) -> Arc<dyn Artifact> {
+    let stage = make(registry, name, params);
     match run(stage.as_ref(), vec![Arc::new(body())]).unwrap().remove(0) {
         PortValue::One(collider) => collider,
         PortValue::Set(..) => unreachable!("a collider is one"),
@@ -100,6 +104,23 @@ fn a_collider_tells_settings_and_signature() {
         format!("{:?}", collider.scheme.card()),
         "ColliderCard { thickness: 0.001, friction: 0.3, restitution: 0.0, self_collision: false, penalty: None }"
     );
+}
+
+#[test]
+fn a_penalty_crosses_with_its_law() {
+    let loaded = registry_with(&["toile_sdf"]);
+    let laws = [
+        ("None", None),
+        ("Linear(50)", Some(Penalty::Linear(50.0))),
+        ("Exponential(0.5)", Some(Penalty::Exponential(0.5))),
+    ];
+    for (written, penalty) in laws {
+        let params = format!("(cell: \"50 mm\", penalty: {written})");
+        let collider = collider_with(&loaded, "SdfCollider", &params);
+        let any: &dyn std::any::Any = collider.as_ref();
+        let collider = any.downcast_ref::<toile_core::artifact::Collider>().unwrap();
+        assert_eq!(collider.scheme.card().penalty, penalty);
+    }
 }
 
 #[test]

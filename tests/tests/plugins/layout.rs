@@ -27,7 +27,8 @@ fn the_header_has_the_layout_of_the_rust_types() {
         "toile_cloth" = abi::Cloth { "positions" = positions, "points" = points, "triangles" = triangles,
             "triangle_count" = triangle_count }
         "toile_collider_card" = abi::ColliderCard { "thickness" = thickness, "friction" = friction,
-            "restitution" = restitution, "penalty" = penalty, "self_collision" = self_collision }
+            "restitution" = restitution, "penalty" = penalty, "self_collision" = self_collision,
+            "penalty_law" = penalty_law }
         "toile_collider_table" = abi::ColliderTable { "size" = size, "card" = card,
             "body_contacts" = body_contacts, "body_hits" = body_hits, "self_contacts" = self_contacts,
             "conservative_bounds" = conservative_bounds, "self_crossings" = self_crossings, "share" = share,

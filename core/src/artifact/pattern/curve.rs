@@ -157,8 +157,8 @@ impl EdgePath {
         EdgePath { shape: CurveShape::Arc(centre, start - centre, angle), length: radius * angle.abs() }
     }
 
-    /// Straight from point to point.
-    pub(super) fn polyline(points: Vec<Point2>) -> Self {
+    /// Straight from point to point; at least one point, metres.
+    pub fn polyline(points: Vec<Point2>) -> Self {
         let mut along = vec![0.0];
         for w in points.windows(2) {
             along.push(along[along.len() - 1] + (w[1] - w[0]).norm());

@@ -579,7 +579,7 @@ fn of_colliders() {
             friction: 0.4,
             restitution: 0.5,
             self_collision: false,
-            penalty: Some(9.0),
+            penalty: Some(Penalty::Linear(9.0)),
         }
     );
     let mut others = changed!(

@@ -15,13 +15,62 @@ const RELEASE: f64 = 0.2;
 pub struct Response {
     /// Coefficient of restitution, 0 to 1.
     pub restitution: f64,
-    /// Penalty stiffness within the contact distance, N/m per node. `None` stops cloth at the
-    /// contact distance.
-    pub penalty: Option<f64>,
+    /// `None` stops cloth at the contact distance.
+    pub penalty: Option<PenaltyForce>,
+}
+
+/// The force with which the body pushes off cloth that is near it, outwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PenaltyForce {
+    /// `c (d - distance)` within the contact distance d: the stiffness c, N/m per node (Fan, Zhou,
+    /// Wang, Yuen 1999).
+    Linear(f64),
+    /// `c exp(-distance / d)`: the force c at the body, N per node (improved spring-mass model,
+    /// 2003).
+    Exponential(f64),
 }
 
 /// Greatest penalty stiffness, as a share of the unstable one.
 const PENALTY_SHARE: f64 = 0.5;
+
+/// The exponential force is neglected beyond so many contact distances, where it is less than a
+/// thousandth of that at the body.
+const NEGLIGIBLE: f64 = 7.0;
+
+impl PenaltyForce {
+    /// The distance up to which it acts, m, with this contact distance.
+    fn range(self, offset: f64) -> f64 {
+        match self {
+            Self::Linear(_) => offset,
+            Self::Exponential(_) => NEGLIGIBLE * offset,
+        }
+    }
+
+    /// Its slope at a distance from the body, N/m, and the quotient of force and slope, m.
+    fn slope(self, distance: f64, offset: f64) -> (f64, f64) {
+        match self {
+            Self::Linear(c) => (c, offset - distance),
+            Self::Exponential(c) => (c / offset * (-distance / offset).exp(), offset),
+        }
+    }
+
+    /// The way by which it pushes a node in a step, m, where `square` is the square of the time
+    /// step over the node's mass, s2/kg. A force too steep for the step is reduced.
+    fn push(self, distance: f64, offset: f64, square: f64) -> f64 {
+        if distance >= self.range(offset) {
+            return 0.0;
+        }
+        let (slope, quotient) = self.slope(distance, offset);
+        (slope * square).min(PENALTY_SHARE) * quotient
+    }
+}
+
+impl Response {
+    /// How much farther than the contact distance the body acts on cloth, m.
+    pub(super) fn beyond(&self, offset: f64) -> f64 {
+        self.penalty.map_or(0.0, |p| p.range(offset) - offset)
+    }
+}
 
 /// How a solid pushes out cloth that starts in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,14 +95,14 @@ pub(super) struct Answer<'a> {
 }
 
 impl Answer<'_> {
-    /// For a node at `gap` from the contact distance that would move by `approach` along the
-    /// normal: its move along the normal, and the part of it that is velocity. `None` for a node
-    /// that is not in contact.
-    fn along_normal(&self, node: usize, gap: f64, approach: f64) -> Option<(f64, f64)> {
+    /// For a node at `distance` from the body that would move by `approach` along the normal: its
+    /// move along the normal, and the part of it that is velocity. `None` for a node that is not
+    /// in contact at the contact distance `offset`.
+    fn along_normal(&self, node: usize, distance: f64, offset: f64, approach: f64) -> Option<(f64, f64)> {
+        let gap = distance - offset;
         if let Some(penalty) = self.response.penalty {
-            let square = self.dt * self.dt * self.inverse[node];
-            let push = (penalty * square).min(PENALTY_SHARE) * -gap;
-            return (gap < 0.0).then_some((approach + push, approach + push));
+            let push = penalty.push(distance, offset, self.dt * self.dt * self.inverse[node]);
+            return (push > 0.0).then_some((approach + push, approach + push));
         }
         if approach >= -gap {
             return None;
@@ -94,8 +143,8 @@ pub(super) fn respond_to_body(
     let mut pushed = vec![Vec3::zeros(); moves.len()];
     for (v, n) in near.iter().enumerate() {
         let Some(n) = n else { continue };
-        let (gap, approach) = (n.distance - offset, moves[v].dot(&n.normal));
-        let Some((goes, kept)) = answer.along_normal(v, gap, approach) else { continue };
+        let approach = moves[v].dot(&n.normal);
+        let Some((goes, kept)) = answer.along_normal(v, n.distance, offset, approach) else { continue };
         let along = moves[v] - n.normal * approach;
         let (way, loss) = (along.norm(), answer.friction * (kept - approach).max(0.0));
         let along = if way > loss { along * (1.0 - loss / way) } else { Vec3::zeros() };

@@ -20,7 +20,7 @@ mod through;
 #[cfg(test)]
 mod tests;
 
-pub use contact::Response;
+pub use contact::{PenaltyForce, Response};
 pub use error::MotionError;
 pub use method::Method;
 pub use recorder::Recorder;

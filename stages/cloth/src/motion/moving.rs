@@ -281,7 +281,8 @@ impl Moving {
     ) -> Result<(Report, Vec<Vec3>), MotionError> {
         let start = self.state.x.clone();
         let foretold: Vec<Vec3> = self.state.v.iter().map(|v| v * dt).collect();
-        let near = Near::of(self.tree.as_ref(), collider, &start, &foretold, self.offset, self.reach());
+        let reach = self.reach(settings);
+        let near = Near::of(self.tree.as_ref(), collider, &start, &foretold, self.offset, reach);
         let (mut advanced, mut is_free, least) = (0.0, true, SHORTEST * settings.dt);
         let report = loop {
             self.model.stopper.check()?;
@@ -315,9 +316,10 @@ impl Moving {
         Ok((report, moves))
     }
 
-    /// The depth from which the body pushes out what starts in it, m.
-    fn reach(&self) -> f64 {
-        self.pushed.map_or(0.0, |p| p.reach)
+    /// How much farther than the contact distance the body is sought, m: for what starts in it, and
+    /// for a force that reaches farther.
+    fn reach(&self, settings: &Motion) -> f64 {
+        self.pushed.map_or(0.0, |p| p.reach).max(settings.response.beyond(self.offset))
     }
 
     /// Mean length of the edges, m.
@@ -404,7 +406,7 @@ impl Moving {
         let pushed = match collider {
             Some(collider) => {
                 let surface = near.map_or_else(
-                    || nearest_on_body(collider, x, moves, offset + self.reach()),
+                    || nearest_on_body(collider, x, moves, offset + self.reach(settings)),
                     |n| n.surface(x),
                 );
                 let friction = collider.friction * self.friction_share;

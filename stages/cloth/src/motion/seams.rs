@@ -93,3 +93,58 @@ pub(super) fn name_of(scene: &Scene, points: &[u32], vertex: u32) -> String {
     let seam = scene.seams.iter().find(|s| s.pairs.iter().any(has));
     seam.map_or("?".into(), |s| s.name.clone())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const VERTICES: usize = 7;
+
+    fn vectors() -> impl Strategy<Value = Vec<Vec3>> {
+        let one = (-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0).prop_map(|(x, y, z)| Vec3::new(x, y, z));
+        prop::collection::vec(one, VERTICES)
+    }
+
+    /// The inner product in the inertia.
+    fn product(u: &[Vec3], v: &[Vec3], inverse: &[f64]) -> f64 {
+        u.iter().zip(v).zip(inverse).map(|((u, v), w)| u.dot(v) / w).sum()
+    }
+
+    proptest! {
+        #[test]
+        fn holding_pairs_together_is_its_own_adjoint_in_the_inertia(
+            pairs in prop::collection::vec((0..VERTICES as u32, 1..VERTICES as u32), 1..12),
+            inverse in prop::collection::vec(0.1f64..10.0, VERTICES),
+            (u, v) in (vectors(), vectors()),
+        ) {
+            let other = |(a, by): (u32, u32)| [a, (a + by) % VERTICES as u32];
+            let seams = Seams::new(pairs.into_iter().map(other).collect(), SeamClosing::Speed);
+            // Pairs that have met: the change is linear in the moves.
+            let x = vec![Vec3::zeros(); VERTICES];
+            let closed = |moves: &[Vec3]| {
+                let mut moves = moves.to_vec();
+                seams.close(&x, &mut moves, &inverse, 0.0);
+                moves
+            };
+            let (one, other) = (product(&u, &closed(&v), &inverse), product(&closed(&u), &v, &inverse));
+            prop_assert!((one - other).abs() < 1e-9 * product(&u, &u, &inverse).max(1.0), "{one} {other}");
+        }
+
+        #[test]
+        fn momentum_is_kept_and_gaps_shrink_by_no_more_than_asked(
+            (x, moves) in (vectors(), vectors()),
+            inverse in prop::collection::vec(0.1f64..10.0, VERTICES),
+        ) {
+            let seams = Seams::new(vec![[0, 1], [2, 3]], SeamClosing::Speed);
+            let mut changed = moves.clone();
+            seams.close(&x, &mut changed, &inverse, 0.05);
+            let momentum = |m: &[Vec3]| m.iter().zip(&inverse).map(|(m, w)| m / *w).sum::<Vec3>();
+            prop_assert!((momentum(&changed) - momentum(&moves)).norm() < 1e-9);
+            for [a, b] in [[0, 1], [2, 3]] {
+                let (gap, after) = (x[b] - x[a], x[b] + changed[b] - x[a] - changed[a]);
+                prop_assert!((gap.norm() - after.norm() - gap.norm().min(0.05)).abs() < 1e-9);
+            }
+        }
+    }
+}

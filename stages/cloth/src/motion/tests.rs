@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-use super::{Method, Motion, MotionError, Moved, Response, SeamClosing, Through, Until};
+use super::{Method, Motion, MotionError, Moved, PenaltyForce, Response, SeamClosing, Through, Until};
 use crate::contact::body::Body;
 use crate::energy::Air;
 use crate::scene::{Phase, Scene, generate};
@@ -199,9 +199,33 @@ fn a_penalty_lets_cloth_sink_by_its_weight_over_the_stiffness() {
     // With the greatest stiffness that the steps allow, the floor yields by no more than the
     // cloth's thickness.
     let offset = falling(2).material.thickness;
-    let soft = bounce(Response { restitution: 0.0, penalty: Some(1e9) });
+    let soft = bounce(Response { restitution: 0.0, penalty: Some(PenaltyForce::Linear(1e9)) });
     assert!(soft > -0.5 * offset && soft < 0.2, "{soft}");
     assert_ne!(soft, bounce(Response::default()));
+}
+
+#[test]
+fn an_exponential_penalty_carries_the_weight_of_the_cloth() {
+    let mut scene = falling(2);
+    let offset = scene.material.thickness;
+    scene.positions = scene.rest.iter().map(|p| Vector3::new(p.x, 2.0 * offset, p.y)).collect();
+    scene.phases[0].seconds = 1.0;
+    let (floor, sides) = floor();
+    let surface = Body::new(floor, &sides);
+    let weight = 9.81 * scene.material.density;
+    // So strong that no node comes to half of the contact distance, where it is held.
+    for share in [10.0f64, 40.0] {
+        let at_the_body = share * weight / scene.positions.len() as f64;
+        let response = Response { restitution: 0.0, penalty: Some(PenaltyForce::Exponential(at_the_body)) };
+        let motion = Motion { response, dt: 1e-3, drag: 50.0, ..Motion::default() };
+        let moved = motion
+            .run(&scene, Some(Collider { surface: &surface, friction: 0.0 }), &mut |_| {
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+        let carried: f64 = moved.positions.iter().map(|p| at_the_body * (-p.y / offset).exp()).sum();
+        assert!((carried - weight).abs() < 0.02 * weight, "{share}: {carried} N of {weight} N");
+    }
 }
 
 /// A square metre of 0.1 kg/m2 hung by its upper edge, in this air.

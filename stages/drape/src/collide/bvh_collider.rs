@@ -32,9 +32,9 @@ pub enum Volume {
 ///
 /// Friction and restitution are applied by the solver when it resolves a contact: the speed along
 /// the skin falls by `friction` times the speed into it, the speed into it is thrown back
-/// `restitution` times. With `penalty`, cloth nearer than `thickness` is pushed off by a spring of
-/// that stiffness instead. Both are what `SpringStitcher` and `SpringDraper` do; the other drapers
-/// refuse them.
+/// `restitution` times. With `penalty`, the body pushes cloth off by a force instead: in proportion
+/// to how much nearer than `thickness` it is (Fan et al. 1999), or falling exponentially with its
+/// distance (2003). All solvers that step in time do both; `StaticEquilibrium` refuses them.
 ///
 /// `ParryCollider` gives the same contacts by another library. Behind another `BvhCollider`, such
 /// as one of the same body in another pose, it takes that one's parameters where it is given none.

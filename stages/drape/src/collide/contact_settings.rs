@@ -27,10 +27,11 @@ pub(crate) struct ContactSettings {
     /// True where cloth is kept out of itself.
     #[param(default = true, trades)]
     pub(crate) self_collision: bool,
-    /// Stiffness of the penalty response, for springs alone; without it contacts are resolved by
-    /// impulses.
-    #[param(default = None, min = 0, max = 1e6, unit = "N/m")]
-    pub(crate) penalty: Option<f64>,
+    /// A force that pushes cloth off the body, for solvers that step in time; without it contacts
+    /// are resolved by impulses. `Linear(c)`: c (thickness - distance) within the thickness, c in
+    /// N/m per vertex. `Exponential(c)`: c exp(-distance / thickness), c in N per vertex.
+    #[param(default = None, min = 0, max = 1e6)]
+    pub(crate) penalty: Option<Penalty>,
     /// Gaps between arm and trunk narrower than this are bridged for the cloth, which cannot rest
     /// in them; none at 0.
     #[param(default = Length::mm(0.0), min = 0.0, max = 0.3)]

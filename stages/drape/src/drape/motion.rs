@@ -11,7 +11,9 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 use toile_cloth::contact::collision_surface::CollisionSurface;
 use toile_cloth::energy::{Air as EngineAir, Models};
-use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Response, Through, Until};
+use toile_cloth::motion::{
+    Method, Motion, MotionError, Moved, PenaltyForce, Progress, Response, Through, Until,
+};
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
 use toile_cloth::statics::drive::solve::Collider as EngineCollider;
 use toile_cloth::stopper::Stopper;
@@ -153,8 +155,7 @@ pub(crate) fn moved(
         Some(_) => Until::Phases { longest: time.longest },
         None => course.motion.until,
     };
-    let response =
-        card.map_or(Response::default(), |c| Response { restitution: c.restitution, penalty: c.penalty });
+    let response = card.map_or(Response::default(), response);
     let motion = Motion { until, response, ..course.motion };
     let cancel = cx.cancel().clone();
     let stopper = Stopper::when(move || cancel.is_cancelled());
@@ -181,6 +182,15 @@ pub(crate) fn moved(
     let mut finished = finish(garment, &moved);
     finished.motion = frames::after(recorder, garment, &moved);
     Ok(finished)
+}
+
+/// How a body with this collider answers cloth that touches it.
+fn response(card: ColliderCard) -> Response {
+    let penalty = card.penalty.map(|penalty| match penalty {
+        Penalty::Linear(c) => PenaltyForce::Linear(c),
+        Penalty::Exponential(c) => PenaltyForce::Exponential(c),
+    });
+    Response { restitution: card.restitution, penalty }
 }
 
 /// The motion; where the body keeps seams open that could close on a thin figure of it, once more

@@ -24,7 +24,7 @@ mod tests {
     use super::*;
     use toile_fixtures::cloth::Capsules;
 
-    fn collider(restitution: f64, penalty: Option<f64>) -> Collider {
+    fn collider(restitution: f64, penalty: Option<Penalty>) -> Collider {
         let plain = Capsules::torso();
         Capsules { card: ColliderCard { restitution, penalty, ..plain.card }, ..plain }.collider()
     }
@@ -42,7 +42,8 @@ mod tests {
                 "take `restitution` out of the collider, or drape in time with `ImplicitEuler`, which uses it"
             )
         );
-        let e = check_response(Some(&collider(0.0, Some(100.0))), "StaticEquilibrium").unwrap_err();
+        let e = check_response(Some(&collider(0.0, Some(Penalty::Exponential(1.0)))), "StaticEquilibrium")
+            .unwrap_err();
         assert_eq!(e.message, "`StaticEquilibrium` does not use the collider's `penalty`");
     }
 }

@@ -7,15 +7,18 @@ mod parts;
 mod quality;
 mod shortfalls;
 pub mod tight;
+mod volume_table;
 
 pub use quality::{Measure, panel_figures};
+pub use volume_table::VolumeTable;
 
 use toile_core::Registry;
 use toile_core::artifact::Garment;
 
-/// Adds the judgement to every pipeline that makes a garment.
+/// Adds the judgement to every pipeline that makes a garment, and the table of volumes.
 pub fn register(registry: &mut Registry) {
     registry.add_implicit::<Measure>();
+    registry.add::<VolumeTable>();
 }
 
 /// The garment by the pattern that it was sewn from; one from a 3D file has no pattern before it is

@@ -16,10 +16,13 @@ mod shading;
 mod tests;
 mod texture_size;
 mod variants;
+mod view_texturer;
 mod weave;
 
 pub use fabric_texturer::{FabricDetail, FabricTexture, FabricTexturer};
 pub use photo_texturer::{BodyShown, Light, PhotoDetail, PhotoLight, PhotoTexturer, Unseen, WrongSide};
+
+pub use view_texturer::ViewTexturer;
 
 use toile_core::Registry;
 use toile_core::prelude::*;
@@ -28,6 +31,7 @@ use toile_core::prelude::*;
 pub fn register(registry: &mut Registry) {
     registry.add::<PhotoTexturer>();
     registry.add::<FabricTexturer>();
+    registry.add::<ViewTexturer>();
 }
 
 /// The photo that shows a panel, or its mask: that of its name, or of the last word of its name,

@@ -443,7 +443,7 @@ fn px_per_metre(garment: &Garment, panel: &GarmentPanel) -> f64 {
 }
 
 /// Refuses what would put NaN into a file or a panel outside of its lists.
-fn check_garment(garment: &Garment) -> Result<(), StageError> {
+pub(super) fn check_garment(garment: &Garment) -> Result<(), StageError> {
     let count = garment.positions.len();
     let finite = garment.positions.iter().all(|p| p.iter().all(|c| c.is_finite()));
     if !finite {

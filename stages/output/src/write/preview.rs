@@ -21,8 +21,9 @@ pub enum Framing {
 
 /// Draws the model from the front, from behind and from the wearer's left.
 ///
-/// Writes `front.png`, `back.png` and `side.png`, and on request `sheet.jpg`: the photo, front,
-/// back, left side and three-quarter view in one row.
+/// Writes `front.png`, `back.png` and `side.png`, on request pictures from other sides
+/// (`turn_060.png`), and `sheet.jpg`: the photo, front, back, left side and three-quarter view in
+/// one row.
 #[stage(
     role = Writer,
     version = 2,
@@ -37,6 +38,9 @@ pub struct Preview {
     /// What fills the pictures.
     #[param(default = Framing::Garment)]
     frame: Framing,
+    /// Sides from which further pictures are drawn: 0 is the wearer's front, 90 the wearer's left.
+    #[param(default = Vec::new(), min = 0, max = 359, unit = "deg")]
+    turns: Vec<u32>,
     /// Height of `sheet.jpg`; none is written where it is not given.
     #[param(default = None, min = 64, max = 2048)]
     sheet: Option<u32>,
@@ -46,6 +50,13 @@ impl Preview {
     /// Whether the garment fills its pictures, which are at least so high, px.
     pub(super) fn is_of_garment(&self, height: u32) -> bool {
         self.frame == Framing::Garment && self.size >= height
+    }
+
+    /// A side that is named twice would be written twice.
+    fn fault(&self) -> Option<StageError> {
+        let twice = self.turns.iter().enumerate().find(|(i, t)| self.turns[..*i].contains(t))?.1;
+        let e = StageError::new(ErrorCode::InvalidParameter, format!("`turns` has {twice} twice"));
+        Some(e.at("turns").hint("take one of them out"))
     }
 }
 
@@ -58,21 +69,30 @@ impl Preview {
         cx: &Context,
     ) -> Result<OutputFiles, StageError> {
         super::check::check_model(model)?;
+        self.fault().map_or(Ok(()), Err)?;
         let scene = ModelScene::draft_in(model, cx)?;
         let frame = match self.frame {
             Framing::Garment => Frame::Garment,
             Framing::Whole => Frame::Whole,
         };
-        let views = [
+        let own = [
             ("front.png", View::front as fn(u32) -> View),
             ("back.png", View::back),
             ("side.png", View::side),
         ];
-        let drawn = |(path, view): (&str, fn(u32) -> View)| {
-            let picture = scene.render(&View { frame, ..view(self.size) });
+        let turned = |turn: &u32| {
+            (format!("turn_{turn:03}.png"), View::turned(f64::from(*turn).to_radians(), self.size))
+        };
+        let views: Vec<(String, View)> = own
+            .into_iter()
+            .map(|(path, view)| (path.to_owned(), view(self.size)))
+            .chain(self.turns.iter().map(turned))
+            .collect();
+        let drawn = |(path, view): (String, View)| {
+            let picture = scene.render(&View { frame, ..view });
             // What is made after a stop is unfinished.
             cx.check()?;
-            file(path, &picture)
+            file(&path, &picture)
         };
         let mut files: Vec<OutputFile> =
             views.into_par_iter().map(drawn).collect::<Result<_, StageError>>()?;
@@ -90,6 +110,10 @@ impl Preview {
             files.push(OutputFile::new("sheet.jpg", bytes));
         }
         Ok(OutputFiles(files))
+    }
+
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        self.fault().into_iter().collect()
     }
 }
 

@@ -241,6 +241,17 @@ fn file_names_stay_in_their_folder() {
 }
 
 #[test]
+fn preview_draws_further_sides_on_request() {
+    let preview = params::<Preview>("(size: 100, turns: [0, 60])");
+    let files = preview.run(&model(), None, &Context::quiet()).unwrap().0;
+    let bytes = |name: &str| &files.iter().find(|f| f.path == name).unwrap().bytes;
+    assert_eq!(bytes("turn_000.png"), bytes("front.png"));
+    assert_ne!(bytes("turn_060.png"), bytes("front.png"));
+    let twice = params::<Preview>("(turns: [60, 60])").run(&model(), None, &Context::quiet()).unwrap_err();
+    assert_eq!(twice.message, "`turns` has 60 twice");
+}
+
+#[test]
 fn preview_shows_the_whole_body_on_request() {
     let redness = |text: &str| {
         let files = params::<Preview>(text).run(&model(), None, &Context::quiet()).unwrap().0;

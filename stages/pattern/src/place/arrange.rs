@@ -9,8 +9,9 @@
 //! made for a body whose origin is its middle are raised onto the floor. Pieces with pleats are
 //! folded first ([`pleats`]), and pieces that are sewn onto others are laid on them last
 //! ([`patches`]). A pattern in which no piece has a pose is placed by names, seams and sizes
-//! ([`region`], [`stand`]). Other starts are left for the solver: pieces without the gaps between
-//! those above each other ([`tiers`]), and skirts on cones ([`cones`]).
+//! ([`region`], [`stand`]); pieces with key points stand at their landmarks ([`key_points`]). Other
+//! starts are left for the solver: pieces without the gaps between those above each other
+//! ([`tiers`]), and skirts on cones ([`cones`]).
 //!
 //! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk
 //! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
@@ -18,6 +19,7 @@
 
 mod boards;
 mod cones;
+mod key_points;
 mod layers;
 mod legs;
 mod limb;
@@ -33,10 +35,11 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
+pub use key_points::KeyPoint;
 use move_input::MoveInput;
 use moving::Moved;
 use region::{Decided, Region};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 
 /// The vertices of each piece in space.
@@ -92,6 +95,12 @@ pub struct Arrange {
     /// narrower than that is refused, with both girths (woven cotton tears at some 25 %).
     #[param(default = 0.25, min = 0.0, max = 10.0)]
     max_tight: f64,
+    /// Pieces that are placed by hand: points of their edges at landmarks of the body, such as
+    /// `[(edge: "collar.neck", at: 0.5, landmark: "neck_base_back")]`. A piece with one key point
+    /// is moved, with more it is turned as well; it stays flat, `clearance` outside of the
+    /// landmarks, and nothing else moves it.
+    #[param(default = Vec::new(), min = 0, max = 1)]
+    key_points: Vec<KeyPoint>,
 }
 
 #[stage]
@@ -116,19 +125,33 @@ impl Arrange {
             }
         }
         let patches = patches::names(pattern);
-        let worn = patches::without(pattern, &patches);
+        let clearance = self.clearance.metres();
+        let (by_hand, told_by_hand) = key_points::place(&self.key_points, pattern, &flat, body, clearance)?;
+        let keyed = key_points::names(&self.key_points);
+        if let Some(name) = patches.intersection(&keyed).next() {
+            return Err(StageError::invalid(format!(
+                "the piece \"{name}\" lies on the piece that it is sewn onto"
+            ))
+            .at("key_points")
+            .hint(format!("take \"{name}\" out of `key_points`")));
+        }
+        told_by_hand.into_iter().for_each(|what| cx.note(what));
+        let elsewhere = patches.union(&keyed).cloned().collect();
+        let outer = patches::without(pattern, &patches);
+        let worn = patches::without(pattern, &elsewhere);
         let mut standing = flat.clone();
-        standing.retain(|name, _| !patches.contains(*name));
+        standing.retain(|name, _| !elsewhere.contains(*name));
         // A pattern without any pose is placed by what its pieces are.
         let unplaced = worn.pieces.iter().all(|p| p.pose.is_none());
         let (mut places, sleeves) = match unplaced && !worn.pieces.is_empty() {
-            true => self.stood(&worn, &standing, body, cx)?,
+            true => self.stood(&outer, &keyed, &standing, body, cx)?,
             false => (posed(&worn, &standing)?, None),
         };
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
         layers::spread(&worn, &mut places, body);
         let finished = |mut places: PiecePlaces| -> Result<(Vec<Point3>, Vec<String>), StageError> {
+            places.extend(by_hand.clone());
             for (name, of) in &folded {
                 if let Some(places) = places.get_mut(name) {
                     of.deepen(places);
@@ -143,7 +166,7 @@ impl Arrange {
             seams: &seams,
             offsets: &offsets,
             sleeves: sleeves.as_deref(),
-            clearance: self.clearance.metres(),
+            clearance,
         };
         let moved = |places: &PiecePlaces| match self.bend {
             true => moving.moved_and_others(places),
@@ -192,6 +215,7 @@ impl Arrange {
     fn stood(
         &self,
         pattern: &Pattern,
+        by_hand: &BTreeSet<String>,
         offsets: &Offsets,
         body: &Body,
         cx: &Context,
@@ -199,7 +223,7 @@ impl Arrange {
         if let Some(name) = offsets.keys().find(|name| pattern.piece(name).is_none()) {
             return Err(unknown(name));
         }
-        let decided = region::decide(pattern)?;
+        let decided = region::decide(pattern, by_hand)?;
         let (places, told) = stand::stand(pattern, &decided, offsets, body, self.clearance.metres())?;
         told.into_iter().for_each(|what| cx.note(what));
         let arm = |(p, d): (&Piece, &Decided)| match d.region {
@@ -305,7 +329,7 @@ fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<PiecePlaces, StageError
         let piece = pattern.piece(name).ok_or_else(|| unknown(name))?;
         let pose = piece.pose.ok_or_else(|| {
             StageError::invalid(format!("nothing says where the piece \"{name}\" stands"))
-                .hint("give its pattern places around the body, as GarmentCode files have")
+                .hint("place it by `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have")
         })?;
         Ok(((*name).to_owned(), panel.positions.iter().map(|p| pose.at(*p)).collect()))
     };

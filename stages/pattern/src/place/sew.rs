@@ -36,7 +36,7 @@ fn unequal(seam: &Seam, a: usize, b: usize) -> StageError {
 }
 
 /// The garment's vertices along an edge or inner line.
-fn vertices(at: &EdgeRef, panels: &Offsets) -> Result<Vec<u32>, StageError> {
+pub(crate) fn vertices(at: &EdgeRef, panels: &Offsets) -> Result<Vec<u32>, StageError> {
     let (offset, panel) = panels.get(at.panel.as_str()).ok_or_else(|| unknown_panel(&at.panel, panels))?;
     let edge = panel.edge(&at.edge).map(|e| &e.vertices);
     let inner = || panel.inner.iter().find(|c| c.name == at.edge).map(|c| &c.vertices);

@@ -1,12 +1,14 @@
-//! Smoothers: panel to panel.
+//! Smoothers: panel to panel, and a garment in space.
 //!
-//! All three share what they must not break (see `guard`): no triangle turns over, corners and ends
-//! of named edges are pinned, the outline stays within its tolerance and edges keep their lengths.
+//! Those of panels share what they must not break (see `guard`): no triangle turns over, corners
+//! and ends of named edges are pinned, the outline stays within its tolerance and edges keep their
+//! lengths.
 
 mod guard;
 mod laplacian;
 mod plane;
 mod surface;
+mod surface_smoother;
 mod taubin;
 #[cfg(test)]
 mod tests;
@@ -15,6 +17,7 @@ mod topology;
 pub use laplacian::Laplacian;
 pub use plane::PlaneSmoother;
 pub use surface::{PlaneSmoothing, smooth_to_planes};
+pub use surface_smoother::SurfaceSmoother;
 pub use taubin::Taubin;
 pub use topology::Neighbours;
 
@@ -25,6 +28,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<PlaneSmoother>();
     registry.add::<Laplacian>();
     registry.add::<Taubin>();
+    registry.add::<SurfaceSmoother>();
 }
 
 /// Checks what a panel from elsewhere (a plugin, a file) may have wrong.

@@ -3,7 +3,7 @@
 //! A template of the garment is laid over the outline and names its edges. [`block`] cuts the
 //! pieces along the template, [`outline`] along the outline itself. Seams between outlines are
 //! checked, and their edges agree on their divisions, in [`sewing`]. [`neckline`] then looks at the
-//! photo for what the outline cannot show.
+//! photo for what the outline cannot show, and [`unpick`] leaves seams open.
 
 mod block;
 mod closed_front;
@@ -15,12 +15,14 @@ mod seams;
 mod sewing;
 #[cfg(test)]
 mod tests;
+mod unpick;
 
 pub use block::{Block, BlockStyle, Complete, Fitting, Sides, Waist};
 pub(crate) use block::{TRUNK_BOTTOM, TRUNK_TOP};
 pub use neckline::Neckline;
 pub use outline::{Outline, OutlineStyle};
 pub use seams::{SeamEntry, Seams};
+pub use unpick::Unpick;
 
 use toile_core::{Migration, Registry};
 
@@ -31,6 +33,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Fitting>();
     registry.add::<Neckline>();
     registry.add::<Seams>();
+    registry.add::<Unpick>();
     registry.migrate(Migration::joined("Vest", "Outline", "style: Vest"));
     registry.migrate(Migration::joined("TShirt", "Outline", "style: TShirt"));
 }

@@ -133,7 +133,11 @@ fn its_signature_tells_bodies_and_settings_apart() {
 
 #[test]
 fn its_card_shows_the_settings() {
-    let settings = ContactSettings { thickness: Length::mm(2.0), penalty: Some(50.0), ..Default::default() };
+    let settings = ContactSettings {
+        thickness: Length::mm(2.0),
+        penalty: Some(Penalty::Linear(50.0)),
+        ..Default::default()
+    };
     let card = made(&with(settings), None).card();
     assert_eq!(
         card,
@@ -142,7 +146,7 @@ fn its_card_shows_the_settings() {
             friction: 0.3,
             restitution: 0.0,
             self_collision: true,
-            penalty: Some(50.0)
+            penalty: Some(Penalty::Linear(50.0))
         }
     );
 }

@@ -162,7 +162,11 @@ fn warns_where_nothing_is_left_to_collide() {
 
 #[test]
 fn its_signature_and_card_tell_settings_and_bodies_apart() {
-    let contact = ContactSettings { thickness: Length::mm(2.0), penalty: Some(50.0), ..Default::default() };
+    let contact = ContactSettings {
+        thickness: Length::mm(2.0),
+        penalty: Some(Penalty::Linear(50.0)),
+        ..Default::default()
+    };
     let other = ParryCollider { contact };
     let made = |c: &ParryCollider, b: Option<&Body>| c.run(b, &Context::quiet()).unwrap();
     let plain = ParryCollider::default();
@@ -175,7 +179,7 @@ fn its_signature_and_card_tell_settings_and_bodies_apart() {
     ];
     assert_eq!(signs.iter().collect::<std::collections::BTreeSet<_>>().len(), 5);
     let card = made(&other, None).scheme.card();
-    assert_eq!((card.thickness, card.penalty), (0.002, Some(50.0)));
+    assert_eq!((card.thickness, card.penalty), (0.002, Some(Penalty::Linear(50.0))));
 }
 
 #[test]

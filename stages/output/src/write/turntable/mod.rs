@@ -66,7 +66,7 @@ pub enum Interpolation {
 /// event `toile:pick` with part, triangle and barycentric coordinates.
 #[stage(
     role = Writer,
-    version = 4,
+    version = 5,
     source = "Chen and Williams 1993; Buehler and others 2001; flow: Jain and Jain 1981, Bierling 1988; light of a panorama: Debevec 1998",
     example = "Turntable(views: 24, tiers: 3)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -75,9 +75,10 @@ pub struct Turntable {
     /// The file's name without its extension.
     #[param(default = "turntable".to_owned())]
     name: String,
-    /// Views around the model, at each height. `Flow` needs 24 or more.
-    #[param(default = 16, min = 4, max = 120, trades)]
-    views: usize,
+    /// Views around the model, at each height; 16 where it is not given, 24 with `Flow`, which
+    /// shows jumps with fewer.
+    #[param(default = None, min = 4, max = 120, trades)]
+    views: Option<usize>,
     /// Heights from which it is seen: 1 to 4.
     #[param(default = 3, min = 1, max = 4, trades)]
     tiers: usize,
@@ -127,6 +128,14 @@ impl Turntable {
 }
 
 impl Turntable {
+    /// Views around the model, at each height.
+    fn around(&self) -> usize {
+        self.views.unwrap_or(match self.interpolate {
+            Interpolation::Depth => 16,
+            Interpolation::Flow => 24,
+        })
+    }
+
     /// What the page shows.
     fn data(&self, model: &Model, panorama: Option<&RgbImage>, cx: &Context) -> Result<Value, StageError> {
         let tiers = TIERS[self.tiers - 1];
@@ -139,7 +148,7 @@ impl Turntable {
             "label": "the garment from all sides",
             "width": orbit.width,
             "height": orbit.height,
-            "views": self.views,
+            "views": self.around(),
             "tiers": tiers,
             "fov": orbit.angle.to_degrees(),
             "distance": orbit.distance,
@@ -159,7 +168,7 @@ impl Turntable {
         }
         if self.interpolate == Interpolation::Flow {
             data["covers"] = by_sheet(&views, &spans, cx, flow::cover)?.into();
-            data["flow"] = flow::flow(&views, &spans, self.views, cx)?;
+            data["flow"] = flow::flow(&views, &spans, self.around(), cx)?;
         }
         let room = (1000 * self.page).saturating_sub(page(&data).len());
         data["sheets"] = self.encoded(&sheets, room, cx)?.into();
@@ -179,11 +188,11 @@ impl Turntable {
         let elevations: Vec<f64> = tiers.iter().map(|t| t.to_radians()).collect();
         let mut by_azimuth = Vec::new();
         let turns: Vec<f64> =
-            (0..self.views).map(|v| std::f64::consts::TAU * v as f64 / self.views as f64).collect();
+            (0..self.around()).map(|v| std::f64::consts::TAU * v as f64 / self.around() as f64).collect();
         for some in turns.chunks(AT_ONCE) {
             cx.check()?;
             let done = by_azimuth.len();
-            cx.progress(done as f64 / self.views as f64, format!("view {done} of {}", self.views));
+            cx.progress(done as f64 / self.around() as f64, format!("view {done} of {}", self.around()));
             let made: Vec<Vec<RgbaImage>> =
                 some.par_iter().map(|turn| scene.cut_outs(orbit, *turn, &elevations)).collect();
             by_azimuth.extend(made.into_iter().map(Vec::into_iter));

@@ -5,7 +5,7 @@ use super::*;
 use toile_core::testkit::dress;
 
 fn small() -> Turntable {
-    Turntable { views: 4, tiers: 2, size: 96, ..Turntable::default() }
+    Turntable { views: Some(4), tiers: 2, size: 96, ..Turntable::default() }
 }
 
 fn html(t: &Turntable, cx: &Context) -> String {

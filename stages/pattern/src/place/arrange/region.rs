@@ -42,6 +42,8 @@ pub(super) enum Region {
     Waist,
     /// An arm, in one piece.
     Arm(Hand),
+    /// Where the user says.
+    ByHand,
 }
 
 /// The side of the body that a piece covers.
@@ -148,10 +150,11 @@ fn joint(pattern: &Pattern, [one, other]: [&[SeamStretch]; 2], (i, j): (usize, u
     (to - from > 1e-6).then_some(Joint { pieces: [i, j], edges: [a, b], middle, share: to - from })
 }
 
-/// Region and side of every piece, in their order.
+/// Region and side of every piece, in their order; those that are placed `by_hand` are not looked
+/// at.
 ///
 /// Errors: the first piece that nothing decides, or that is sewn to nothing, with the remedy.
-pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
+pub(super) fn decide(pattern: &Pattern, by_hand: &BTreeSet<String>) -> Result<Vec<Decided>, StageError> {
     let joints = joints(pattern);
     let words = own_words(pattern);
     let pieces = &pattern.pieces;
@@ -164,9 +167,13 @@ pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
         let is = |table: &[&str]| words[i].iter().find(|w| table.contains(&w.as_str())).cloned();
         let unclear = |what: String| {
             StageError::invalid(what).hint(
-                "call it front, back or waistband, or give its pattern places around the body, as GarmentCode files have",
+                "call it front, back or waistband, place it by `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have",
             )
         };
+        if by_hand.contains(name) {
+            let why = "its key points".to_owned();
+            return Ok(Decided { region: Region::ByHand, side: Side::Around, hand: None, why });
+        }
         if !joints.iter().any(|j| j.pieces.contains(&i)) {
             let e = StageError::invalid(format!("the piece \"{name}\" is sewn to nothing and would fall"));
             return Err(e.hint("write its seams into the file that the reader takes as `seams`, or take the piece out"));

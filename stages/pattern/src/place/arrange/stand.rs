@@ -130,6 +130,7 @@ pub(super) fn stand(
             Region::Leg(hand) => leg(i, pattern, hand, &joints, &figure, body, clearance),
             Region::Arm(hand) => sleeve(i, pattern, hand, &joints, body)?,
             Region::Waist => band(i, pattern, &joints, &hung, &figure, body, clearance),
+            Region::ByHand => continue,
         };
         places.insert(piece.name.clone(), panel.positions.iter().map(|p| placed.at(*p)).collect());
         told.push(format!("\"{}\" {words}: {}", piece.name, d.why));

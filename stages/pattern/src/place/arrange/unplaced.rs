@@ -4,6 +4,7 @@
 use super::Arrange;
 use super::region::{Decided, Region, Side, decide};
 use crate::mesh::GridMesher;
+use std::collections::BTreeSet;
 use toile_core::prelude::*;
 
 fn piece(name: &str, corners: &[[f64; 2]], edges: &[&str]) -> Piece {
@@ -97,6 +98,10 @@ fn tee() -> Pattern {
 }
 
 fn arranged(pattern: &Pattern) -> Result<Garment, StageError> {
+    arranged_with(pattern, "()")
+}
+
+fn arranged_with(pattern: &Pattern, params: &str) -> Result<Garment, StageError> {
     let lowered = pattern.lower().unwrap();
     let mesher: GridMesher = toile_core::param::ron_options().from_str("(edge: \"20 mm\")").unwrap();
     let panel =
@@ -104,7 +109,7 @@ fn arranged(pattern: &Pattern) -> Result<Garment, StageError> {
     let panels = Set(lowered.outlines.iter().map(panel).collect());
     let lengths = "(height: \"168 cm\", bust: \"80 cm\", waist: \"66 cm\", hip: \"85 cm\")";
     let body = toile_fixtures::mannequin(lengths).unwrap();
-    let stage: Arrange = toile_core::param::ron_options().from_str("()").unwrap();
+    let stage: Arrange = toile_core::param::ron_options().from_str(params).unwrap();
     let fabric = toile_core::testkit::dress::fabric();
     stage.run(pattern, panels, &lowered.plan, &body, &fabric, &Context::quiet())
 }
@@ -138,7 +143,7 @@ fn looks_out(garment: &Garment, panel: &str) -> bool {
 
 #[test]
 fn fronts_and_backs_are_known_by_the_short_words_of_cad_programs() {
-    let decided = decide(&tank()).unwrap();
+    let decided = decide(&tank(), &BTreeSet::new()).unwrap();
     let why = |word: &str| {
         format!(
             "the word \"{word}\" in its name; it is sewn at its upper end beside the middle, as shoulders are"
@@ -162,7 +167,7 @@ fn a_tank_hangs_from_the_shoulders_before_and_behind_the_body() {
 #[test]
 fn legs_go_around_their_own_leg_and_the_band_around_the_waist() {
     let pattern = leggings();
-    let decided = decide(&pattern).unwrap();
+    let decided = decide(&pattern, &BTreeSet::new()).unwrap();
     let found: Vec<Region> = decided.iter().map(|d| d.region).collect();
     assert_eq!(found, [Region::Leg(Hand::Left), Region::Leg(Hand::Right), Region::Waist]);
     let g = arranged(&pattern).unwrap();
@@ -178,7 +183,7 @@ fn legs_go_around_their_own_leg_and_the_band_around_the_waist() {
 #[test]
 fn sleeves_go_around_the_arm_whose_armhole_they_are_sewn_into() {
     let pattern = tee();
-    let decided = decide(&pattern).unwrap();
+    let decided = decide(&pattern, &BTreeSet::new()).unwrap();
     let found: Vec<Region> = decided.iter().skip(2).map(|d| d.region).collect();
     assert_eq!(found, [Region::Arm(Hand::Right), Region::Arm(Hand::Left)]);
     let g = arranged(&pattern).unwrap();
@@ -252,7 +257,7 @@ fn what_cannot_be_sewn_or_placed_is_refused_by_name() {
             "write its seams into the file that the reader takes as `seams`, or take the piece out".into()
         )
     );
-    let hint = "call it front, back or waistband, or give its pattern places around the body, as GarmentCode files have";
+    let hint = "call it front, back or waistband, place it by `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have";
     let renamed = |name: &str| {
         let mut p = tank();
         p.pieces[0].name = name.into();
@@ -272,4 +277,54 @@ fn what_cannot_be_sewn_or_placed_is_refused_by_name() {
             hint.into()
         )
     );
+}
+
+/// A tank with a collar, which no rule places.
+fn collared() -> Pattern {
+    let mut tank = tank();
+    let corners = [[0.0, 0.0], [0.2, 0.0], [0.2, 0.06], [0.0, 0.06]];
+    tank.pieces.push(piece("TANK COLLAR", &corners, &["neck", "end_l", "top", "end_r"]));
+    tank.seams.push(seam(("TANK COLLAR", "neck"), ("TANK BK", "neck")));
+    tank
+}
+
+#[test]
+fn key_points_place_a_piece_that_no_rule_does() {
+    let at = "(key_points: [(edge: \"TANK COLLAR.neck\", at: 0.5, landmark: \"neck_base_back\")])";
+    let garment = arranged_with(&collared(), at).unwrap();
+    let lengths = "(height: \"168 cm\", bust: \"80 cm\", waist: \"66 cm\", hip: \"85 cm\")";
+    let neck = toile_fixtures::mannequin(lengths).unwrap().landmarks["neck_base_back"];
+    let collar = middle(&garment, "TANK COLLAR");
+    assert!((collar.x - neck.x).abs() < 1e-3 && (collar.y - neck.y - 0.03).abs() < 1e-3, "{collar} {neck}");
+    assert!((neck.z - collar.z - 0.02).abs() < 1e-3, "{collar} {neck}");
+    assert!(looks_out(&garment, "TANK COLLAR"));
+    // The others stand as they do without the collar, whose seam divides the neckline otherwise.
+    let off = middle(&garment, "TANK FRT") - middle(&arranged(&tank()).unwrap(), "TANK FRT");
+    assert!(off.norm() < 5e-3, "{off}");
+}
+
+#[test]
+fn every_piece_may_be_placed_by_hand() {
+    let front = "(edge: \"TANK FRT.neck\", at: 0.5, landmark: \"neck_base_front\")";
+    let back = "(edge: \"TANK BK.neck\", at: 0.5, landmark: \"neck_base_back\")";
+    let garment = arranged_with(&tank(), &format!("(key_points: [{front}, {back}])")).unwrap();
+    assert!(middle(&garment, "TANK FRT").z > middle(&garment, "TANK BK").z);
+}
+
+#[test]
+fn key_points_on_what_is_not_there_are_refused_with_what_is() {
+    let refused = |edge: &str, landmark: &str| {
+        let key = format!("(key_points: [(edge: \"{edge}\", at: 0.5, landmark: \"{landmark}\")])");
+        let e = arranged_with(&tank(), &key).unwrap_err();
+        (e.message, e.hint.unwrap_or_default())
+    };
+    let (message, hint) = refused("TANK SIDE.neck", "waist_back");
+    assert_eq!(message, "there is no panel \"TANK SIDE\"");
+    assert_eq!(hint, "the panels are \"TANK BK\", \"TANK FRT\"");
+    let (message, hint) = refused("TANK FRT.nek", "waist_back");
+    assert_eq!(message, "the panel \"TANK FRT\" has no edge \"nek\"");
+    assert!(hint.starts_with("its edges are \""), "{hint}");
+    let (message, hint) = refused("TANK FRT.neck", "waist");
+    assert_eq!(message, "the body has no landmark \"waist\"");
+    assert!(hint.contains("\"waist_back\", \"waist_front\""), "{hint}");
 }
