@@ -1,14 +1,15 @@
 //! Arguments of `toile batch` and `toile manifest`.
 
-use super::amounts::duration;
+use super::amounts::{duration, length};
 use super::shared::{CacheChoice, Overrides};
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
+use toile_core::Length;
 use toile_pipeline::cache::Bytes;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct BatchArgs {
     /// The manifest: a garment a line, as `toile manifest` writes it; paths in it are relative to
     /// its folder
@@ -22,6 +23,14 @@ pub(crate) struct BatchArgs {
     /// Run one of so many shares of the manifest, like 3/16; all shares may write one folder
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     pub(crate) shard: Shard,
+    /// Take the coarsest quality of the pipeline that keeps this error, like "3 mm"; with
+    /// --deadline the finest that is done in time
+    #[arg(long, value_name = "LENGTH", value_parser = length, conflicts_with = "quality")]
+    pub(crate) max_error: Option<Length>,
+    /// Take the finest quality of the pipeline at which all garments are done after this time, by
+    /// the times of some of them, and stop then, like 8h (ms, s, m, h)
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["quality", "check", "only", "retry_only"])]
+    pub(crate) deadline: Option<Duration>,
     /// Longest time of a garment, like 120s (ms, s, m, h) [default: none]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     pub(crate) max_time: Option<Duration>,

@@ -16,7 +16,7 @@ pub(crate) struct Overrides {
 }
 
 /// Which cache a command uses.
-#[derive(Debug, Args, Default)]
+#[derive(Debug, Clone, Args, Default)]
 pub(crate) struct CacheChoice {
     /// Run every stage, and keep no results
     #[arg(long, conflicts_with = "cache_dir")]

@@ -8,6 +8,7 @@
 //! - `manifest`: the garments and what is wrong with their lines; `make`, `csv`, `names`: manifests
 //!   from files and tables.
 //! - `plan`: which garments are run, by the records of those that are done.
+//! - `quality`: the quality at which they are run, where an error or a deadline is asked for.
 //! - `pool`: a process a garment, within memory and time; `memory`: what Linux tells of that;
 //!   `task`: what goes in and comes out; `child`: that process from inside; `thumb`: its picture.
 //! - `keep`: what came of a garment, put into its place with its `record`; `folder`: the output
@@ -27,6 +28,7 @@ mod names;
 mod page;
 mod plan;
 mod pool;
+mod quality;
 mod record;
 mod summary;
 mod tally;
@@ -44,10 +46,12 @@ use keep::GarmentKeeper;
 use manifest::{GarmentLine, LineFault};
 use plan::BatchPlan;
 use pool::PoolLimits;
+use quality::{Means, Timed};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use tally::{BatchTally, Tallies};
-use toile_core::{Registry, StageError};
+use toile_core::{Cancel, Registry, StageError};
 use toile_pipeline::Faults;
 
 /// The most faults of a manifest that are shown.
@@ -159,8 +163,13 @@ fn planned(
     streams: &mut Streams<'_>,
 ) -> Result<u8, StageError> {
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stdin::stem(&args.manifest)));
-    let plan = BatchPlan::new(args, manifest_folder, &out, garments, registry)?;
+    let started = Instant::now();
+    let by_error = match args.deadline {
+        None => quality::by_error(args, manifest_folder, &garments, registry, streams)?,
+        Some(_) => args.clone(),
+    };
     if args.check {
+        let plan = BatchPlan::new(&by_error, manifest_folder, &out, garments, registry)?;
         return Ok(told_plan(args, &plan, streams));
     }
     let Some(program) = streams.apart.as_ref().map(|p| apart::for_command(p, "run-garment")) else {
@@ -169,10 +178,21 @@ fn planned(
         )
         .hint("call the command `toile`"));
     };
-    let folder = BatchFolder::open(&out, args.shard)?;
-    streams.notice(plan.words());
     let limits = limits(args);
     let cancel = interrupt::on_ctrl_c();
+    let chosen = match args.deadline {
+        None => Some(Timed { args: by_error, forecast: None }),
+        Some(deadline) => {
+            let means = Means { program: &program, limits: &limits, cancel: &cancel, registry, started };
+            let folders = (manifest_folder, out.as_path());
+            quality::by_deadline(args, deadline, folders, &garments, &means, streams)?
+        }
+    };
+    let Some(Timed { args, forecast }) = &chosen else { return Ok(exit::STOPPED) };
+    let plan = BatchPlan::new(args, manifest_folder, &out, garments, registry)?;
+    let folder = BatchFolder::open(&out, args.shard)?;
+    streams.notice(plan.words());
+    args.deadline.iter().for_each(|deadline| stop_after(quality::left(*deadline, started), &cancel));
     let mut keeper = GarmentKeeper::new(args, &plan, &folder, registry, streams, limits.jobs > 1);
     let ran = pool::run(&program, plan.run.iter().copied(), &limits, &cancel, &mut keeper);
     interrupt::begin_writing();
@@ -183,12 +203,26 @@ fn planned(
     }
     let is_stopped = cancel.is_cancelled();
     tell_end(args, &folder, &tallies, is_stopped, streams);
+    if let (Some(forecast), false) = (forecast, is_stopped) {
+        let took = quality::in_words(started.elapsed().as_secs_f64());
+        streams
+            .notice(format!("it took {took} with the pilot; {} were expected", quality::in_words(*forecast)));
+    }
     // What other shares have come to says nothing of this one.
     Ok(match (is_stopped, tallies.share.faults.is_empty()) {
         (true, _) => exit::STOPPED,
         (false, false) => exit::QUALITY,
         (false, true) => exit::DONE,
     })
+}
+
+/// Stops the batch after so many seconds, as Ctrl-C does.
+fn stop_after(seconds: f64, cancel: &Cancel) {
+    let cancel = cancel.clone();
+    std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_secs_f64(seconds));
+        cancel.cancel();
+    });
 }
 
 fn told_plan(args: &BatchArgs, plan: &BatchPlan, streams: &mut Streams<'_>) -> u8 {

@@ -3,6 +3,7 @@
 mod faults;
 mod killed;
 mod manifests;
+mod qualities;
 mod results;
 
 use crate::sheet::sheet;
