@@ -19,7 +19,9 @@ fn with_qualities(count: usize) -> tempfile::TempDir {
 fn quality(dir: &Path) -> String {
     let mut names: Vec<String> = results(dir, "out")
         .values()
-        .map(|line| line["quality"]["name"].as_str().unwrap().to_owned())
+        .map(|line| {
+            line["quality"]["name"].as_str().unwrap().trim_end_matches(", changed by --set").to_owned()
+        })
         .collect();
     names.dedup();
     assert_eq!(names.len(), 1, "{names:?}");

@@ -209,7 +209,7 @@ fn an_exponential_penalty_carries_the_weight_of_the_cloth() {
     let mut scene = falling(2);
     let offset = scene.material.thickness;
     scene.positions = scene.rest.iter().map(|p| Vector3::new(p.x, 2.0 * offset, p.y)).collect();
-    scene.phases[0].seconds = 1.0;
+    scene.phases[0].seconds = 2.0;
     let (floor, sides) = floor();
     let surface = Body::new(floor, &sides);
     let weight = 9.81 * scene.material.density;
@@ -217,7 +217,7 @@ fn an_exponential_penalty_carries_the_weight_of_the_cloth() {
     for share in [10.0f64, 40.0] {
         let at_the_body = share * weight / scene.positions.len() as f64;
         let response = Response { restitution: 0.0, penalty: Some(PenaltyForce::Exponential(at_the_body)) };
-        let motion = Motion { response, dt: 1e-3, drag: 50.0, ..Motion::default() };
+        let motion = Motion { response, dt: 1e-3, drag: 10.0, ..Motion::default() };
         let moved = motion
             .run(&scene, Some(Collider { surface: &surface, friction: 0.0 }), &mut |_| {
                 ControlFlow::Continue(())
