@@ -13,7 +13,7 @@ use toile_core::artifact::{Model, Point3, Vector3};
 /// What lies this much deeper than the nearest surface is still seen, metres.
 const TOLERANCE: f64 = 4e-3;
 
-/// Rounds in which distance and aim are matched; each leaves some hundredths of what was off.
+/// Rounds in which distance and aim are matched: each moves what the others had matched a little.
 const ROUNDS: usize = 8;
 
 /// The middle of a pixel, sub-pixel steps.
