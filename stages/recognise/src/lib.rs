@@ -39,6 +39,7 @@
 
 mod area;
 mod error;
+mod fields;
 mod landmarks;
 mod letterbox;
 mod maps;

@@ -13,6 +13,7 @@
 //! [`PartsNetwork::load`] reads none but the one whose digest it knows.
 
 use crate::error::RecogniseError;
+use crate::fields;
 use crate::weights::DIGEST;
 use crate::words::{GarmentKind, Landmark, Lie, Limb, Part};
 use rten::{
@@ -83,6 +84,9 @@ impl PartsNetwork {
     /// The file is no ONNX file, is damaged, uses operators that the network does not use, or takes
     /// or gives other shapes.
     pub fn load_other(file: &[u8]) -> Result<PartsNetwork, RecogniseError> {
+        if !fields::lead_on(file) {
+            return Err(RecogniseError::NoOnnx);
+        }
         let model = caught(|| options().load(file.to_vec())).map_err(broken)?;
         let model = model.map_err(|e| match e.kind() {
             LoadErrorKind::UnknownFileType | LoadErrorKind::FormatNotEnabled => RecogniseError::NoOnnx,

@@ -45,6 +45,16 @@ fn it_is_no_onnx_file() {
 }
 
 #[test]
+fn a_length_that_leads_back_ends() {
+    // A field that nothing knows, of length 2^64 - 11: that of its own key and length.
+    let back = [0x7a, 0xf5, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01];
+    let version = [0x08, 0x08];
+    for bytes in [&back[..], &[&version[..], &back].concat()] {
+        assert_eq!(refusal(bytes), "the network's file is no ONNX file", "{bytes:?}");
+    }
+}
+
+#[test]
 fn it_was_cut_short() {
     assert_eq!(refusal(&FILE[..FILE.len() / 2]), "the network's file is damaged or cut short");
 }

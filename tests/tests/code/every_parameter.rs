@@ -15,8 +15,10 @@ use toile_core::{Card, Inputs, Registry};
 
 /// Parameters whose values no rule makes.
 const VALUES: &[(&str, &str)] = &[
+    ("Alter.alterations", "[MoveEdge(edge: \"front.hem\", x: \"0 mm\", y: \"-20 mm\")]"),
     ("Arap.darts", "Auto(max_strain: 0.02)"),
     ("Arrange.key_points", "[(edge: \"front.hem\", at: 0.5, landmark: \"neck_left\")]"),
+    ("Block.landmarks", "{\"armpit_left\": (0.3, 0.4)}"),
     ("Block.waist", "Gathered(fullness: 1.5, band: \"3 cm\")"),
     ("BvhCollider.penalty", "Linear(50)"),
     ("Cloth.warp", "[(0.02, 90.0), (0.03, 490.0)]"),
@@ -33,10 +35,13 @@ const VALUES: &[(&str, &str)] = &[
     ("Outfit.garments", "[\"pinafore_specification.json\", \"shirt_specification.json\"]"),
     ("ParryCollider.penalty", "Linear(50)"),
     ("Photos.photos", "{\"front\": (file: \"another.jpg\", width: \"52 cm\")}"),
+    ("Preview.turns", "[60]"),
     ("Seams.seams", "[Match(\"front.side_left\", \"back.side_right\")]"),
+    ("SpringStitcher.seam_force", "Linear(2000.0)"),
     ("SpringFlatten.darts", "Auto(max_strain: 0.02)"),
     ("SymmetricDirichlet.darts", "Auto(max_strain: 0.02)"),
     ("Unpick.edges", "[\"front.side_right\"]"),
+    ("ViewTexturer.turns", "{\"front\": 90, \"back\": 270}"),
     ("Woven.darts", "Auto(max_strain: 0.02)"),
 ];
 
@@ -61,7 +66,9 @@ const UNSEEN: &[&str] = &[
     "Auto.garment",
     "Auto.rect",
     "Block.stray",
-    "Block.network",
+    "Block.complete",
+    "CentralDifferences.sew_through",
+    "CentralDifferences.coarsest",
     "Difference.shadow",
     "Difference.holes",
     "Difference.touch",
@@ -71,7 +78,6 @@ const UNSEEN: &[&str] = &[
     "Fit.comfort",
     "Fit.over",
     "Fitting.complete",
-    "Fitting.network",
     "Garment3d.leave_out",
     "Garment3d.weld",
     "GraphCut.rounds",
@@ -80,6 +86,9 @@ const UNSEEN: &[&str] = &[
     "GraphCut.ground",
     "GraphCut.rect",
     "GraphCut.strokes",
+    "ImplicitEuler.sew_through",
+    "ImplicitEuler.coarsest",
+    "LightField.down",
     "Measure.max_tight",
     "Measure.least_on_body",
     "Measure.max_body_crossings",
@@ -88,10 +97,15 @@ const UNSEEN: &[&str] = &[
     "Obj.weld",
     "PhotoTexturer.unseen",
     "PhotoTexturer.variants",
+    "Projective.sew_through",
+    "Projective.coarsest",
     "Report.pictures",
     "Report.views",
     "Scene.distances",
     "Scene.weld",
+    "SpringDraper.sew_through",
+    "SpringDraper.coarsest",
+    "SpringStitcher.coarsest",
     "StaticEquilibrium.coarsest",
     "StaticEquilibrium.coarse_steps",
     "StaticEquilibrium.steps",
@@ -99,6 +113,8 @@ const UNSEEN: &[&str] = &[
     "StaticEquilibrium.asleep",
     "StaticEquilibrium.thickness",
     "Woven.angle",
+    "Xpbd.sew_through",
+    "Xpbd.coarsest",
 ];
 
 /// What bounds or paces a run; another value must not change the result.

@@ -27,6 +27,15 @@ const PHOTOS: [&str; 14] = [
     "photo_onepiece.ron",
 ];
 
+/// Those of them that are sewn with each stage that sews, drapes and dresses: without sleeves, with
+/// short and long ones, with legs, with pleats.
+const SEWN: [&str; 5] =
+    ["vest.ron", "tshirt.ron", "photo_longsleeve.ron", "photo_trousers.ron", "photo_pleated.ron"];
+
+/// The time that a solver has which steps in time, seconds: some take an hour for what they cannot
+/// do well.
+const TIME: f64 = 10.0;
+
 /// What makes a run of a pipeline cheap: a coarse mesh, and photos from its samples made small.
 fn cheap(name: &str, dir: &Path) -> Vec<String> {
     let mut sets = vec!["stages.GridMesher.edge=\"40 mm\"".to_owned()];
@@ -54,7 +63,9 @@ fn swaps(name: &str, roles: &[Role]) -> Vec<String> {
     for node in loaded.nodes.iter().filter(|n| roles.contains(&n.card.role)) {
         let others = registry.cards().filter(|c| c.role == node.card.role && c.name != node.card.name);
         for card in others {
-            let own = format!("{}()", card.name);
+            let has_limit = card.params.iter().any(|p| p.name == "time_limit");
+            let limit = if has_limit { format!("time_limit: {TIME:?}") } else { String::new() };
+            let own = format!("{}({limit})", card.name);
             let arguments = own.strip_prefix(card.name).unwrap_or("()");
             let written = if registry.make(card, arguments).is_ok() { own } else { card.example.to_owned() };
             found.push(format!("stages.{}={written}", node.id));
@@ -78,7 +89,7 @@ fn faults(name: &str, roles: &[Role], until: Option<&str>) -> Vec<String> {
         let answer = toile(&args);
         println!("{name} {swap}: {}", answer.code);
         let reason = !answer.err.trim().is_empty();
-        if !(answer.code == 0 || ([3, 4].contains(&answer.code) && reason)) {
+        if !(answer.code == 0 || ([3, 4, 5].contains(&answer.code) && reason)) {
             faults.push(format!("{name} {swap}: exit code {}\n{}{}", answer.code, answer.out, answer.err));
         }
     }
@@ -96,9 +107,16 @@ fn a_vest_is_cut_or_refused_whichever_stages_look_at_its_photos() {
 
 #[test]
 #[ignore = "slow: .ci/wide"]
-fn every_photo_pipeline_ends_well_or_is_refused_whichever_stages_it_has() {
-    let later = [Role::Mesher, Role::Smoother, Role::Collider, Role::Stitcher, Role::Draper, Role::Texturer];
-    let roles: Vec<Role> = OF_PHOTOS.into_iter().chain(later).collect();
-    let faults: Vec<String> = PHOTOS.iter().flat_map(|name| faults(name, &roles, None)).collect();
+fn every_photo_pipeline_is_cut_or_refused_whichever_stages_look_at_its_photos() {
+    let until = Some("PlaneSmoother");
+    let faults: Vec<String> = PHOTOS.iter().flat_map(|name| faults(name, &OF_PHOTOS, until)).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn photo_pipelines_end_well_or_are_refused_whichever_stages_sew_and_dress() {
+    let roles = [Role::Mesher, Role::Smoother, Role::Collider, Role::Stitcher, Role::Draper, Role::Texturer];
+    let faults: Vec<String> = SEWN.iter().flat_map(|name| faults(name, &roles, None)).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
