@@ -4,9 +4,9 @@
 //! 2^63 or more moves it back, and it then reads the same field for ever. Within a field it knows
 //! where the field ends.
 
-/// Whether every length of the outermost fields leads on. What cannot be read is left to the
-/// runtime, which refuses it.
-pub(crate) fn lead_on(mut bytes: &[u8]) -> bool {
+/// Whether the runtime would move forward over every outermost field. What cannot be read is left
+/// to the runtime, which refuses it.
+pub(crate) fn skips_forward(mut bytes: &[u8]) -> bool {
     while let Some((key, rest)) = number(bytes) {
         let skipped = match key % 8 {
             0 => number(rest).map(|(_, rest)| rest),

@@ -84,7 +84,7 @@ impl PartsNetwork {
     /// The file is no ONNX file, is damaged, uses operators that the network does not use, or takes
     /// or gives other shapes.
     pub fn load_other(file: &[u8]) -> Result<PartsNetwork, RecogniseError> {
-        if !fields::lead_on(file) {
+        if !fields::skips_forward(file) {
             return Err(RecogniseError::NoOnnx);
         }
         let model = caught(|| options().load(file.to_vec())).map_err(broken)?;

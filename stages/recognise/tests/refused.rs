@@ -45,7 +45,7 @@ fn it_is_no_onnx_file() {
 }
 
 #[test]
-fn a_length_that_leads_back_ends() {
+fn a_length_that_leads_back_is_refused() {
     // A field that nothing knows, of length 2^64 - 11: that of its own key and length.
     let back = [0x7a, 0xf5, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01];
     let version = [0x08, 0x08];

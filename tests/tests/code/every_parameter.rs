@@ -15,10 +15,8 @@ use toile_core::{Card, Inputs, Registry};
 
 /// Parameters whose values no rule makes.
 const VALUES: &[(&str, &str)] = &[
-    ("Alter.alterations", "[MoveEdge(edge: \"front.hem\", x: \"0 mm\", y: \"-20 mm\")]"),
     ("Arap.darts", "Auto(max_strain: 0.02)"),
     ("Arrange.key_points", "[(edge: \"front.hem\", at: 0.5, landmark: \"neck_left\")]"),
-    ("Block.landmarks", "{\"armpit_left\": (0.3, 0.4)}"),
     ("Block.waist", "Gathered(fullness: 1.5, band: \"3 cm\")"),
     ("BvhCollider.penalty", "Linear(50)"),
     ("Cloth.warp", "[(0.02, 90.0), (0.03, 490.0)]"),
@@ -37,8 +35,8 @@ const VALUES: &[(&str, &str)] = &[
     ("Photos.photos", "{\"front\": (file: \"another.jpg\", width: \"52 cm\")}"),
     ("Preview.turns", "[60]"),
     ("Seams.seams", "[Match(\"front.side_left\", \"back.side_right\")]"),
-    ("SpringStitcher.seam_force", "Linear(2000.0)"),
     ("SpringFlatten.darts", "Auto(max_strain: 0.02)"),
+    ("SpringStitcher.seam_force", "Linear(2000.0)"),
     ("SymmetricDirichlet.darts", "Auto(max_strain: 0.02)"),
     ("Unpick.edges", "[\"front.side_right\"]"),
     ("ViewTexturer.turns", "{\"front\": 90, \"back\": 270}"),
