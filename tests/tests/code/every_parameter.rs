@@ -8,7 +8,7 @@
 use image::{Rgb, RgbImage};
 use std::path::Path;
 use std::sync::Arc;
-use toile_core::artifact::{Artifact, ArtifactType, Garment, Phases, Photo};
+use toile_core::artifact::{Artifact, ArtifactType, Garment, Outline, Phases, Photo, Point2};
 use toile_core::param::ParamDoc;
 use toile_core::testkit::{Trial, cases, dress, folder, from_example, shapes, suite};
 use toile_core::{Card, Inputs, Registry};
@@ -64,7 +64,6 @@ const UNSEEN: &[&str] = &[
     "Auto.garment",
     "Auto.rect",
     "Block.stray",
-    "Block.complete",
     "CentralDifferences.sew_through",
     "CentralDifferences.coarsest",
     "Difference.shadow",
@@ -75,7 +74,6 @@ const UNSEEN: &[&str] = &[
     "FabricTexturer.variants",
     "Fit.comfort",
     "Fit.over",
-    "Fitting.complete",
     "Garment3d.leave_out",
     "Garment3d.weld",
     "GraphCut.rounds",
@@ -185,7 +183,41 @@ fn within(p: &ParamDoc) -> Vec<String> {
 
 /// Inputs beside the shared suite's.
 fn more(card: &Card) -> Vec<Inputs> {
-    [hard_photos(card), garments_alone(card)].concat()
+    [hard_photos(card), cut_outlines(card), garments_alone(card)].concat()
+}
+
+/// A T-shirt of which the frame cuts half a sleeve, with its photo.
+fn cut_outlines(card: &Card) -> Vec<Inputs> {
+    let port = |kind| card.inputs.iter().position(|p| p.kind == kind);
+    let (Some(outline), Some(photo)) = (port(Outline::KIND), port(Photo::KIND)) else { return Vec::new() };
+    let whole = shapes::tshirt();
+    let frame = shapes::frame(&whole);
+    let at = 0.38;
+    let cut = Outline { frame: Some(frame), ..shapes::plain(left_of(&whole.outer.points, at), vec![0]) };
+    let pixels = shapes::photo_of(&whole).0.pixels;
+    let width = frame.to_px(shapes::p(at, 0.0)).x as u32;
+    let seen = shapes::photo_from(RgbImage::from_fn(width, pixels.height(), |x, y| *pixels.get_pixel(x, y)));
+    let with = |mut inputs: Inputs| {
+        let (cut, seen): (Arc<dyn Artifact>, Arc<dyn Artifact>) = (Arc::new(cut), Arc::new(seen));
+        inputs.0[outline] = Some(suite::value(&card.inputs[outline], &cut));
+        inputs.0[photo] = Some(suite::value(&card.inputs[photo], &seen));
+        inputs
+    };
+    cases(card).into_iter().next().map(|case| with(case.inputs)).into_iter().collect()
+}
+
+/// The part of a polygon left of a line across.
+fn left_of(points: &[Point2], at: f64) -> Vec<Point2> {
+    let mut left = Vec::new();
+    for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
+        if a.x <= at {
+            left.push(*a);
+        }
+        if (a.x < at) != (b.x < at) && a.x != at && b.x != at {
+            left.push(a + (b - a) * ((at - a.x) / (b.x - a.x)));
+        }
+    }
+    left
 }
 
 /// Photos of a garment with a hole, specks and a shadow on uneven ground, whole and cut by the
