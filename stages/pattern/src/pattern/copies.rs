@@ -25,7 +25,7 @@ pub(super) fn copies(piece: Piece, drawn: usize, turned: usize, told: &mut Remar
 }
 
 /// The piece for the other side of the body.
-fn mirrored(p: &Piece) -> Piece {
+pub(crate) fn mirrored(p: &Piece) -> Piece {
     let to = |q: Point2| Point2::new(-q.x, q.y);
     let turned = |l: &PatternLoop| {
         let n = l.corners.len();

@@ -1,7 +1,7 @@
 //! Sewing patterns from files: what takes the place of photos, outlines and a style.
 
 mod chain;
-mod copies;
+pub(crate) mod copies;
 mod dxf;
 mod faults;
 mod follow;

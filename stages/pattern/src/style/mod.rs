@@ -5,6 +5,7 @@
 //! checked, and their edges agree on their divisions, in [`sewing`]. [`neckline`] then looks at the
 //! photo for what the outline cannot show, and [`unpick`] leaves seams open.
 
+mod alter;
 mod block;
 mod closed_front;
 mod drawn;
@@ -17,7 +18,8 @@ mod sewing;
 mod tests;
 mod unpick;
 
-pub use block::{Block, BlockStyle, Complete, Fitting, Sides, Waist};
+pub use alter::{Alter, Alteration};
+pub use block::{Block, BlockStyle, Complete, Fitting, PhotoLandmark, Sides, Waist, landmarks};
 pub(crate) use block::{TRUNK_BOTTOM, TRUNK_TOP};
 pub use neckline::Neckline;
 pub use outline::{Outline, OutlineStyle};
@@ -34,6 +36,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Neckline>();
     registry.add::<Seams>();
     registry.add::<Unpick>();
+    registry.add::<Alter>();
     registry.migrate(Migration::joined("Vest", "Outline", "style: Vest"));
     registry.migrate(Migration::joined("TShirt", "Outline", "style: TShirt"));
 }

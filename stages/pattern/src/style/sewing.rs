@@ -13,7 +13,7 @@ use toile_core::nearest;
 use toile_core::prelude::*;
 
 /// Lengths that differ by more than this share are no seam unless it is declared gathered.
-const MAX_EASE: f64 = 0.03;
+pub(super) const MAX_EASE: f64 = 0.03;
 /// Lengths that differ by more than this share are eased with a warning.
 const EASE_WARNING: f64 = 0.01;
 /// Threads of a reversed seam are at least this much longer than those of the right one; edges that

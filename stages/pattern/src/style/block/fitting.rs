@@ -18,6 +18,7 @@ use crate::style::block::template::fit::Fit;
 use crate::style::block::template::flat::Side;
 use crate::style::block::template::form::Form;
 use crate::style::block::template::piece_role::Layer;
+use std::collections::BTreeMap;
 use toile_body::Mannequin;
 use toile_core::param::ron_options;
 use toile_core::prelude::*;
@@ -157,6 +158,7 @@ impl Fitting {
                 waist: Waist::Plain,
                 front: Front::Whole,
                 network: self.network,
+                landmarks: BTreeMap::new(),
             };
             block.fitted(FRONT, front, photo.as_ref(), self.style.forms(), &cx.for_entry(FRONT))
         };

@@ -42,6 +42,7 @@ use rayon::prelude::*;
 pub(super) use refusal::{LAY, no_front};
 pub(super) use stand::Stand;
 pub(crate) use stand::{TRUNK_BOTTOM, TRUNK_TOP};
+use std::collections::BTreeMap;
 use tell::at_95;
 pub use template::alike::Sides;
 pub use template::complete::Complete;
@@ -50,7 +51,9 @@ use template::form::{Form, Mark};
 use template::halves::Upright;
 use template::marks::missing;
 pub(super) use template::piece_role::Layer;
-use template::seen::SeenCorners;
+pub use template::places::{PhotoLandmark, landmarks};
+use template::said::SaidCorners;
+use template::seen::{CornerPull, SeenCorners};
 use toile_core::prelude::*;
 pub use waist::Waist;
 pub(super) use wearable::{check as check_wearable, ellipse};
@@ -183,6 +186,15 @@ pub struct Block {
     /// at where sleeves and legs end that lie against the rest.
     #[param(default = true)]
     network: bool,
+    /// Where a person sees landmarks in the photo of the front, as shares of its width and height
+    /// from its top left corner: `{"armpit_left": (0.7, 0.42)}`. Each is held at the nearest place
+    /// of the outline; left and right are the wearer's. There are `neck`, `shoulder`, `armpit`,
+    /// `waist`, `hip` and `hem` with `_left` or `_right`, `cuff_left_outer`, `cuff_left_inner`,
+    /// `leg_left_outer`, `leg_left_inner`, the same with `right`, and `fork`, of which a garment
+    /// has its own. In the photo of the back: `back.armpit_left`. One that is said of one side
+    /// alone holds for both where they are cut alike.
+    #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
+    landmarks: BTreeMap<String, (f64, f64)>,
 }
 
 #[stage]
@@ -203,7 +215,8 @@ impl Block {
             photo.map(|photo| SeenPhoto::of(photo, self.network)).transpose()
         };
         let seen = photo(FRONT)?;
-        let found = self.fitted(FRONT, front, seen.as_ref(), self.style.forms(), cx)?;
+        let forms = template::said::with_all(self.style.forms(), &self.landmarks)?;
+        let found = self.fitted(FRONT, front, seen.as_ref(), forms, cx)?;
         self.tell(FRONT, front, &found, cx);
         self.explains(FRONT, &found, cx)?;
         let (name, form, before) = found;
@@ -227,6 +240,7 @@ impl Block {
         check_wearable(name, form, &before.fit, body, seen.as_ref().map(|s| s.photo))?;
         let behind = match outlines.get(BACK).filter(|back| !lay::is_mirrored(back, front)) {
             None => {
+                template::said::none_of(BACK, &self.landmarks)?;
                 let frame = outlines.get(BACK).map_or_else(|| mirrored(front).frame, |back| back.frame);
                 before.mirrored(frame)
             }
@@ -256,6 +270,11 @@ impl Block {
             body,
             cx,
         )
+    }
+
+    /// Landmarks that no garment has.
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        template::said::known(&self.landmarks).err().into_iter().collect()
     }
 }
 
@@ -381,11 +400,12 @@ impl Block {
         let seen = photo.and_then(|photo| photo.seen.as_ref()).zip(outline.frame.as_ref());
         let corners =
             |upright: &Upright| seen.map(|(seen, frame)| SeenCorners::of(seen, upright, frame, *is_opened));
+        let said = SaidCorners::of(&self.landmarks, panel, outline, photo.map(|p| p.photo), &upright)?;
         cx.check()?;
         let said = |name: &str| *is_said || likely.is_some_and(|l| l.is_sure_of(name));
         let size = upright.size;
         let limit = |name: &str| self.stray * size * if said(name) { 1.0 } else { UNSAID };
-        let found = tried(&upright, panel, forms, Halves::Both, *likely, corners(&upright).as_ref())
+        let found = tried(&upright, panel, forms, Halves::Both, *likely, corners(&upright).as_ref(), &said)
             .and_then(|best| match strays(&best.2) > limit(best.0) {
                 true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), !is_said)),
                 false => Ok(best),
@@ -397,7 +417,8 @@ impl Block {
         let one = || {
             let upright = upright.about_its_rows()?;
             let best =
-                tried(&upright, panel, forms, Halves::Better, *likely, corners(&upright).as_ref()).ok()?;
+                tried(&upright, panel, forms, Halves::Better, *likely, corners(&upright).as_ref(), &said)
+                    .ok()?;
             let (other, limit) = (1 - best.2.judged?, limit(best.0));
             let is_sound = strays(&best.2) <= limit * HALF && best.2.near(&upright, other, limit) >= OTHER;
             is_sound.then_some((best, upright))
@@ -415,7 +436,8 @@ impl Block {
         let mut cut = fit.clone();
         template::stance::stood(&mut cut, form);
         if self.sides == Sides::Alike {
-            template::alike::alike(&mut cut, form, fit.astray(&upright, form));
+            let said = said.pulls(form, &upright);
+            template::alike::alike(&mut cut, form, fit.astray(&upright, form), &said);
         }
         Ok((name, form, Fitted { upright, fit: cut, lying: fit, frame: outline.frame, apart: Vec::new() }))
     }
@@ -468,11 +490,14 @@ fn tried<'f>(
     halves: Halves,
     likely: Option<&Likely>,
     corners: Option<&SeenCorners>,
+    said: &SaidCorners,
 ) -> Result<(&'static str, &'f Form, Fit), StageError> {
-    let tried: Vec<_> = forms
-        .par_iter()
-        .map(|(name, form)| sound(upright, form, halves, corners, likely.is_some_and(|l| l.is_sure_of(name))))
-        .collect();
+    let is_sure = |name: &str| likely.is_some_and(|l| l.is_sure_of(name));
+    let try_one = |(name, form): &(&'static str, &'f Form)| {
+        let pulls = said.pulls(form, upright);
+        sound(upright, form, halves, corners, &pulls, is_sure(name))
+    };
+    let tried: Vec<_> = forms.par_iter().map(try_one).collect();
     let (mut found, mut reasons) = (Vec::new(), Vec::new());
     for ((name, form), result) in forms.iter().zip(tried) {
         match result {
@@ -495,11 +520,14 @@ fn sound(
     form: &Form,
     halves: Halves,
     corners: Option<&SeenCorners>,
+    said: &[CornerPull],
     is_sure: bool,
 ) -> Result<Fit, &'static str> {
+    let corners = corners.map(|c| c.clone().corrected(form, said));
+    let corners = corners.as_ref();
     let mut reason = "its edges are not in their usual places";
     let mut allowed = Vec::new();
-    for fit in fits(upright, form, halves, corners) {
+    for fit in fits(upright, form, halves, corners, said) {
         let corner = |side: usize, k: usize| {
             fit.judged.is_none_or(|judged| judged == side).then(|| fit.corner(side, k))
         };

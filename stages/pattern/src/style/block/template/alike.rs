@@ -5,11 +5,12 @@
 //! and may lie folded, are taken from one side: the one that the template fits better, and where
 //! both fit alike, the one with the wider cuff, since a fold only narrows it. One that is nearly
 //! twice as wide is none: there a side of the sleeve was taken for its cuff, and the other one is
-//! right.
+//! right. What a person has said of one side alone holds for both.
 
 use crate::style::block::template::bow::Bow;
 use crate::style::block::template::fit::Fit;
 use crate::style::block::template::form::Form;
+use crate::style::block::template::seen::CornerPull;
 use toile_core::prelude::*;
 
 /// A side fits better where its misses are smaller by so many times.
@@ -32,12 +33,25 @@ pub enum Sides {
 }
 
 /// Makes both sides of a fit alike. `misses` is how far the outline strays from the sleeves of each
-/// side.
-pub(crate) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
+/// side; `said` are corners that a person has set.
+pub(crate) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2], said: &[CornerPull]) {
     let is_sleeve = |k: &usize| form.edges[*k].own_end && form.underarm().is_some_and(|arm| *k >= arm);
     let own: Vec<usize> = (0..form.edges.len()).filter(is_sleeve).collect();
-    let chosen = fit.judged.unwrap_or_else(|| chosen(fit, &own, misses));
-    let means: Vec<Bow> = (0..form.edges.len()).map(|k| mean(&fit.sides[0][k], &fit.sides[1][k])).collect();
+    let are_said = |side: usize| said.iter().any(|p| p.side == side && own.contains(&p.edge) && !p.is_start);
+    let by_word = match [0, 1].map(are_said) {
+        [true, false] => Some(0),
+        [false, true] => Some(1),
+        _ => None,
+    };
+    let chosen = by_word.or(fit.judged).unwrap_or_else(|| chosen(fit, &own, misses));
+    let mut means: Vec<Bow> =
+        (0..form.edges.len()).map(|k| mean(&fit.sides[0][k], &fit.sides[1][k])).collect();
+    for p in said.iter().filter(|p| !p.is_start && p.edge + 1 < form.edges.len()) {
+        if !said.iter().any(|q| q.edge == p.edge && q.side != p.side && !q.is_start) {
+            let corner = fit.sides[p.side][p.edge].b;
+            (means[p.edge].b, means[p.edge + 1].a) = (corner, corner);
+        }
+    }
     let mut edges = means.clone();
     if let (Some(&first), Some(&last)) = (own.first(), own.last()) {
         let side = &fit.sides[chosen];

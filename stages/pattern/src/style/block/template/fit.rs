@@ -38,8 +38,10 @@ const ALIKE: [f64; 2] = [0.02, 0.05];
 /// Places on each edge that are drawn to the outline, and their weight.
 const PLACES: usize = 8;
 const PULL: f64 = 0.5;
-/// Spread of corners about those that are seen, as a share of the size.
+/// Spread of corners about those that are seen, as a share of the size, and about those that a
+/// person has set: these hold.
 const SEEN: f64 = 0.04;
+const SAID: f64 = 0.0005;
 /// Squared spreads that a point adds to the score at most.
 const MOST: f64 = 16.0;
 /// What the sum of squares of the cut adds to the score, for each of its points; and what every
@@ -178,14 +180,19 @@ impl Fit {
 }
 
 /// The fits of a form: the best from the outline, and that from the landmarks that are seen; none
-/// where its edges cannot be laid over the outline at all.
+/// where its edges cannot be laid over the outline at all. Corners that are `said` lie where they
+/// are said to.
 pub(crate) fn fits(
     upright: &Upright,
     form: &Form,
     halves: Halves,
     corners: Option<&SeenCorners>,
+    said: &[CornerPull],
 ) -> Vec<Fit> {
-    let pulls = corners.map_or_else(Vec::new, |corners| corners.pulls(form));
+    let mut pulls = corners.map_or_else(Vec::new, |corners| corners.pulls(form));
+    let is_said = |p: &CornerPull| said.iter().any(|s| (s.side, s.edge) == (p.side, p.edge) && !s.is_start);
+    pulls.retain(|p| !is_said(p));
+    pulls.extend(said);
     let corners = corners.filter(|_| halves == Halves::Both);
     let by_landmarks = corners.and_then(|corners| by_landmarks(upright, form, corners, &pulls));
     by_outline(upright, form, halves, &pulls).into_iter().chain(by_landmarks).collect()
@@ -237,7 +244,10 @@ fn better(upright: &Upright, form: &Form, cuts: &[Option<Cut>; 2], pulls: &[Corn
         fit.sides[1 - side] = fit.sides[side].clone();
         Some(fit.priced(cut.cost / points, form))
     };
-    let fits = cuts.iter().enumerate().filter_map(solve);
+    // A half on which corners are said is the one to judge by.
+    let said = [0, 1].map(|side: usize| pulls.iter().filter(|p| p.is_said && p.side == side).count());
+    let most = said.into_iter().max().unwrap_or(0);
+    let fits = cuts.iter().enumerate().filter(|(side, _)| said[*side] == most).filter_map(solve);
     // What is folded or tucked away makes a half narrower.
     let reach = |fit: &Fit| {
         let half = upright.halves[fit.judged.unwrap_or(0)].iter();
@@ -300,6 +310,7 @@ impl<'a> Problem<'a> {
     }
 
     fn solve(mut self) -> Fit {
+        self.begin_as_said();
         let mut damping = 1e-3;
         for step in 0..STEPS {
             let share = (step as f64 / (STEPS as f64 * SETTLES)).min(1.0);
@@ -327,6 +338,21 @@ impl<'a> Problem<'a> {
             }
         }
         self.found()
+    }
+
+    /// Starts with the corners that are said where they are said to lie.
+    fn begin_as_said(&mut self) {
+        let last = self.form.edges.len() - 1;
+        let m = model(self.form, &self.at);
+        for p in self.pulls.iter().filter(|p| p.is_said) {
+            let place = m.seen(p.seen, p.side);
+            if p.is_start {
+                self.at[2] = place.y;
+            } else if p.edge < last {
+                let k = AXIS + p.side * (PER_EDGE * last + 2) + p.edge * PER_EDGE + 2;
+                (self.at[k], self.at[k + 1]) = (place.x, place.y);
+            }
+        }
     }
 
     /// What is drawn to what; far points count less.
@@ -397,9 +423,11 @@ impl<'a> Problem<'a> {
             all.extend(corner.iter().map(|c| c / (ALIKE[0] * self.upright.size)));
             all.extend(bows.map(|b| b / ALIKE[1]));
         }
-        for CornerPull { side, edge, seen } in self.pulls {
-            let off = m.sides[*side][*edge].b - m.seen(*seen, *side);
-            all.extend(off.iter().map(|d| d / (SEEN * self.upright.size)));
+        for CornerPull { side, edge, is_start, seen, is_said } in self.pulls {
+            let bow = &m.sides[*side][*edge];
+            let off = if *is_start { bow.a } else { bow.b } - m.seen(*seen, *side);
+            let spread = if *is_said { SAID } else { SEEN };
+            all.extend(off.iter().map(|d| d / (spread * self.upright.size)));
         }
     }
 

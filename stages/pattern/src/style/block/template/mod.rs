@@ -11,6 +11,8 @@ pub(crate) mod form;
 pub(crate) mod halves;
 pub(crate) mod marks;
 pub(crate) mod piece_role;
+pub(crate) mod places;
+pub(crate) mod said;
 pub(crate) mod seen;
 pub(crate) mod segment;
 pub(crate) mod stance;

@@ -22,19 +22,24 @@ const SPREAD: f64 = 0.05;
 const MOST: f64 = 9.0;
 
 /// Landmarks of both sides in the frame of an upright outline, the left side seen in a mirror.
+#[derive(Clone)]
 pub(crate) struct SeenCorners {
     sides: [Vec<(Landmark, Point2)>; 2],
     /// Whether corners are drawn to them, beside the outline.
     are_pulled: bool,
 }
 
-/// A corner of a template that is drawn to where it is seen.
+/// A corner of a template that is drawn to where it is seen, or held where it is said to lie.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct CornerPull {
     pub side: usize,
-    /// The edge that ends there.
+    /// The edge that ends there, or starts there where that is said.
     pub edge: usize,
+    pub is_start: bool,
     /// In the frame of the upright outline.
     pub seen: Point2,
+    /// Whether a person has said it.
+    pub is_said: bool,
 }
 
 /// The landmarks of the right side of a picture, and those of its left.
@@ -68,7 +73,7 @@ const MIDDLE: [Landmark; 2] = [Landmark::NeckFront, Landmark::Fork];
 
 /// The landmark, on the right side, at which an edge of a form ends; none where it has no name, or
 /// lies on the axis.
-fn named(form: &Form, k: usize) -> Option<Landmark> {
+pub(crate) fn named(form: &Form, k: usize) -> Option<Landmark> {
     let next = form.edges.get(k + 1).map(|e| e.role)?;
     match (form.edges[k].role, next) {
         (EdgeRole::Hem, _) if form.begins_at_fork() => Some(Landmark::LegRightOuter),
@@ -125,6 +130,22 @@ impl SeenCorners {
         SeenCorners { sides: [side(0), side(1)], are_pulled }
     }
 
+    /// With the corners of a form where a person has said that they lie.
+    pub(crate) fn corrected(mut self, form: &Form, said: &[CornerPull]) -> Self {
+        for pull in said {
+            let name = if pull.is_start { Some(Landmark::Fork) } else { named(form, pull.edge) };
+            let Some(name) = name else { continue };
+            // The fork is a landmark of both sides.
+            let sides = [0, 1].into_iter().filter(|side| pull.is_start || *side == pull.side);
+            for side in sides {
+                let place = Point2::new(if side == 0 { pull.seen.x } else { -pull.seen.x }, pull.seen.y);
+                self.sides[side].retain(|(other, _)| *other != name);
+                self.sides[side].push((name, place));
+            }
+        }
+        self
+    }
+
     /// A landmark of a side.
     fn at(&self, side: usize, name: Landmark) -> Option<Point2> {
         self.sides[side].iter().find(|(other, _)| *other == name).map(|(_, p)| *p)
@@ -136,7 +157,7 @@ impl SeenCorners {
         let pull = |(side, edge): (usize, usize)| {
             let p = self.at(side, named(form, edge)?)?;
             let seen = Point2::new(if side == 0 { p.x } else { -p.x }, p.y);
-            Some(CornerPull { side, edge, seen })
+            Some(CornerPull { side, edge, is_start: false, seen, is_said: false })
         };
         edges.filter(|_| self.are_pulled).filter_map(pull).collect()
     }
