@@ -17,6 +17,7 @@ pub use depth::DepthMap;
 pub use limbs::bridge::bridged;
 pub use limbs::swing::Swing;
 pub use mannequin::Mannequin;
+pub use measures::sizes::size_names;
 pub use pose_body::PoseBody;
 pub use skin::slice::{convex_hull, slice, trunk};
 pub use skin::thin::grown;

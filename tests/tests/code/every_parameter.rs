@@ -15,8 +15,10 @@ use toile_core::{Card, Inputs, Registry};
 
 /// Parameters whose values no rule makes.
 const VALUES: &[(&str, &str)] = &[
+    ("Alter.alterations", "[MoveEdge(edge: \"front.hem\", x: \"0 mm\", y: \"-20 mm\")]"),
     ("Arap.darts", "Auto(max_strain: 0.02)"),
     ("Arrange.key_points", "[(edge: \"front.hem\", at: 0.5, landmark: \"neck_left\")]"),
+    ("Block.landmarks", "{\"armpit_left\": (0.3, 0.4)}"),
     ("Block.waist", "Gathered(fullness: 1.5, band: \"3 cm\")"),
     ("BvhCollider.penalty", "Linear(50)"),
     ("Cloth.warp", "[(0.02, 90.0), (0.03, 490.0)]"),

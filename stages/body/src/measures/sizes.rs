@@ -110,10 +110,33 @@ pub(crate) fn known(wearer: Option<Wearer>) -> &'static str {
     }
 }
 
+/// The names of all sizes that a figure comes in, as `Mannequin(size: ...)` takes them: letters
+/// first, then EU numbers; where no figure is stated a woman's, then a child's.
+pub fn size_names(wearer: Option<Wearer>) -> Vec<String> {
+    let eu = |table: &[(u32, [f64; 3])]| table.iter().map(|row| format!("EU {}", row.0)).collect::<Vec<_>>();
+    let letters = || LETTERS.iter().map(|l| l.0.to_owned()).collect::<Vec<_>>();
+    match wearer {
+        None => [letters(), eu(&WOMEN), eu(&CHILDREN)].concat(),
+        Some(Wearer::Woman) => [letters(), eu(&WOMEN)].concat(),
+        Some(Wearer::Man) => [letters(), eu(&MEN)].concat(),
+        Some(Wearer::Child) => eu(&CHILDREN),
+    }
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_name_of_a_size_is_one() {
+        for wearer in [None, Some(Wearer::Woman), Some(Wearer::Man), Some(Wearer::Child)] {
+            let names = size_names(wearer);
+            assert!(names.iter().all(|name| measures(name, wearer).is_some()), "{names:?}");
+        }
+        assert_eq!(size_names(Some(Wearer::Man))[5..8], ["XXL", "EU 44", "EU 46"]);
+        assert_eq!((size_names(None).len(), size_names(Some(Wearer::Child)).len()), (30, 12));
+    }
 
     #[test]
     fn a_childs_girths_follow_its_height() {

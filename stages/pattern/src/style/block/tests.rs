@@ -8,6 +8,7 @@ use proptest::prelude::*;
 
 mod halves;
 mod made_up;
+mod said;
 mod worn;
 
 /// A closed polygon, a point each 5 mm or so, from the corners of its right half in mm, from below
