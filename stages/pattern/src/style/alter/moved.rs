@@ -99,11 +99,9 @@ pub(super) fn can_lengthen(piece: &Piece, k: usize, by: f64) -> Result<(), Stage
     if length + by >= LEAST {
         return Ok(());
     }
-    Err(StageError::invalid(format!("\"{name}\" is only {:.1} mm long", length * 1e3)).hint(format!(
-        "it can be made shorter by {:.0} mm at most: by: \"-{:.0} mm\"",
-        ((length - LEAST) * 1e3).floor(),
-        ((length - LEAST) * 1e3).floor()
-    )))
+    let most = ((length - LEAST) * 1e3 + 1e-6).floor();
+    Err(StageError::invalid(format!("\"{name}\" is only {:.1} mm long", length * 1e3))
+        .hint(format!("it can be made shorter by {most:.0} mm at most: by: \"-{most:.0} mm\"")))
 }
 
 fn chord(piece: &Piece, k: usize) -> Vector2 {

@@ -270,12 +270,14 @@ fn darts_are_sewn_in_the_mirror_image_too() {
 fn edges_are_sewn_and_seams_opened() {
     let (made, told, warned) = notes(
         &pattern(),
-        "Unsew(edge: \"back.side_left\"), Sew(a: \"front.side_left\", b: \"back.side_left\", reversed: false),
+        "Unsew(edge: \"back.side_left\"), Unsew(edge: \"front.side_right\"),
+         Sew(a: \"front.side_left\", b: \"back.side_right\", reversed: false),
          Sew(a: \"front.hem\", b: \"back.hem\")",
     );
-    assert_eq!(told, ["the seam \"front.side_left + back.side_left\" is open"]);
+    let open = ["left", "right"].map(|s| format!("the seam \"front.side_{s} + back.side_{s}\" is open"));
+    assert_eq!(told, open);
     let plan = made.lower().unwrap().plan;
-    assert_eq!(plan.seams.len(), 5);
+    assert_eq!(plan.seams.len(), 4);
     let hems = plan.seams.last().unwrap();
     assert_eq!((hems.name().as_str(), hems.reversed), ("front.hem + back.hem", false));
     assert_eq!(warned, Vec::<String>::new());
@@ -348,7 +350,7 @@ fn what_no_cloth_can_be_cut_to_is_refused_with_how_far_it_goes() {
     let cases = [
         (
             "MoveEdge(edge: \"front.hem\", x: \"0 mm\", y: \"600 mm\")",
-            "\"front\" could not be cut so: its side_left would cross its shoulder_left",
+            "\"front\" could not be cut so: it would be turned inside out",
             "so far it goes: MoveEdge(edge: \"front.hem\", x: \"0 mm\", y: \"499 mm\")",
         ),
         (
@@ -442,7 +444,8 @@ fn a_vest_whose_hem_is_raised_is_shorter_and_its_photo_goes_along() {
     }
     // The back is what it was, as it lies.
     assert_eq!(made.get("back").unwrap().lies, Vec::<Point2>::new());
-    assert_eq!(plan, dress::plan());
+    let sewn = |plan: &SewingPlan| plan.seams.iter().map(Seam::name).collect::<Vec<_>>();
+    assert_eq!(sewn(&plan), sewn(&dress::plan()));
     assert!(made.iter().all(|(_, o)| o.check().is_ok()));
 }
 

@@ -400,12 +400,12 @@ impl Block {
         let seen = photo.and_then(|photo| photo.seen.as_ref()).zip(outline.frame.as_ref());
         let corners =
             |upright: &Upright| seen.map(|(seen, frame)| SeenCorners::of(seen, upright, frame, *is_opened));
-        let said = SaidCorners::of(&self.landmarks, panel, outline, photo.map(|p| p.photo), &upright)?;
+        let marks = SaidCorners::of(&self.landmarks, panel, outline, photo.map(|p| p.photo), &upright)?;
         cx.check()?;
         let said = |name: &str| *is_said || likely.is_some_and(|l| l.is_sure_of(name));
         let size = upright.size;
         let limit = |name: &str| self.stray * size * if said(name) { 1.0 } else { UNSAID };
-        let found = tried(&upright, panel, forms, Halves::Both, *likely, corners(&upright).as_ref(), &said)
+        let found = tried(&upright, panel, forms, Halves::Both, *likely, corners(&upright).as_ref(), &marks)
             .and_then(|best| match strays(&best.2) > limit(best.0) {
                 true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), !is_said)),
                 false => Ok(best),
@@ -417,7 +417,7 @@ impl Block {
         let one = || {
             let upright = upright.about_its_rows()?;
             let best =
-                tried(&upright, panel, forms, Halves::Better, *likely, corners(&upright).as_ref(), &said)
+                tried(&upright, panel, forms, Halves::Better, *likely, corners(&upright).as_ref(), &marks)
                     .ok()?;
             let (other, limit) = (1 - best.2.judged?, limit(best.0));
             let is_sound = strays(&best.2) <= limit * HALF && best.2.near(&upright, other, limit) >= OTHER;
@@ -436,7 +436,7 @@ impl Block {
         let mut cut = fit.clone();
         template::stance::stood(&mut cut, form);
         if self.sides == Sides::Alike {
-            let said = said.pulls(form, &upright);
+            let said = marks.pulls(form, &upright);
             template::alike::alike(&mut cut, form, fit.astray(&upright, form), &said);
         }
         Ok((name, form, Fitted { upright, fit: cut, lying: fit, frame: outline.frame, apart: Vec::new() }))
