@@ -21,7 +21,25 @@ pub(crate) fn found(overrides: &[Override]) -> Vec<Override> {
 
 /// The overrides with their files found from a folder, as those of a manifest are.
 pub(crate) fn found_from(folder: &Path, overrides: &[Override]) -> Vec<Override> {
-    overrides.iter().map(|o| if names_file(o) { with_file(folder, o) } else { within(folder, o) }).collect()
+    overrides.iter().map(|o| found_by(&mut |text| full(folder, text), o)).collect()
+}
+
+/// All texts of an override that may name files, whether there are such files or not.
+pub(crate) fn mentioned(o: &Override) -> Vec<String> {
+    let mut texts = Vec::new();
+    let mut note = |text: &str| {
+        texts.push(text.to_owned());
+        None
+    };
+    found_by(&mut note, o);
+    // A list of seams is none of files.
+    texts.retain(|text| !text.starts_with('['));
+    texts
+}
+
+/// The override with its files as `find` gives them.
+fn found_by(find: &mut dyn FnMut(&str) -> Option<PathBuf>, o: &Override) -> Override {
+    if names_file(o) { with_file(find, o) } else { within(find, o) }
 }
 
 /// The file that an override names as its whole value.
@@ -45,7 +63,7 @@ fn names_file(o: &Override) -> bool {
 }
 
 /// The override with the files found that fields within its value name.
-fn within(folder: &Path, o: &Override) -> Override {
+fn within(find: &mut dyn FnMut(&str) -> Option<PathBuf>, o: &Override) -> Override {
     let mut value = String::new();
     let mut rest = o.value.as_str();
     // Whether the texts that follow are in a list of files.
@@ -58,11 +76,10 @@ fn within(folder: &Path, o: &Override) -> Override {
             Some(head) => LISTS.contains(&field_before(head)),
             None => in_list && before == ",",
         };
-        match full(folder, text) {
-            Some(full) if in_list || FIELDS.contains(&field_before(before)) => {
-                value.push_str(&format!("{:?}", full.display().to_string()));
-            }
-            _ => value.push_str(&format!("\"{text}\"")),
+        let is_file = in_list || FIELDS.contains(&field_before(before));
+        match is_file.then(|| find(text)).flatten() {
+            Some(full) => value.push_str(&format!("{:?}", full.display().to_string())),
+            None => value.push_str(&format!("\"{text}\"")),
         }
         rest = after;
     }
@@ -93,10 +110,10 @@ fn full(folder: &Path, text: &str) -> Option<PathBuf> {
     std::path::absolute(&path).ok().filter(|_| path.is_file())
 }
 
-fn with_file(folder: &Path, o: &Override) -> Override {
+fn with_file(find: &mut dyn FnMut(&str) -> Option<PathBuf>, o: &Override) -> Override {
     let is_text = ["\"", "r\"", "r#"].iter().any(|open| o.value.starts_with(open));
     let bare = bare(&o.value);
-    match full(folder, bare) {
+    match find(bare) {
         Some(full) => Override { value: format!("{:?}", full.display().to_string()), ..o.clone() },
         // A list of seams is none of files.
         None if is_text || !o.path.ends_with("file") => o.clone(),
@@ -107,7 +124,7 @@ fn with_file(folder: &Path, o: &Override) -> Override {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::found;
+    use super::{found, mentioned};
     use toile_pipeline::Override;
 
     fn value(text: &str) -> String {
@@ -156,6 +173,16 @@ mod tests {
             format!("Outfit(garments: [{here:?}], name: \"Cargo.toml\")")
         );
         assert_eq!(value("plugins=[\"Cargo.toml\"]"), "[\"Cargo.toml\"]");
+    }
+
+    #[test]
+    fn files_are_told_whether_they_are_there_or_not() {
+        let told = |text: &str| mentioned(&text.parse::<Override>().unwrap());
+        assert_eq!(told("pattern.file=a.json"), ["a.json"]);
+        assert_eq!(told("body=BodyObj(file: \"b.obj\", unit: Metres)"), ["b.obj"]);
+        assert_eq!(told("pattern.garments=[\"a.json\", \"b.json\"]"), ["a.json", "b.json"]);
+        assert_eq!(told("pattern.seams=[Match(\"a.b\", \"c.d\")]"), [""; 0]);
+        assert_eq!(told("fabric=Preset(\"denim\")"), [""; 0]);
     }
 
     #[test]

@@ -2,27 +2,30 @@
 # Runs the same 24 garments through every engine of examples/batch, and compares what is written with one undisturbed batch, to
 # the bit. Slurm, munge and buildah come from Debian, Ray and Snakemake from the Python index. Root starts it, since Slurm's daemons are root's.
 #
-#     tests/engines/check.sh [slurm] [snakemake] [kubernetes] [ray] [container]     all without a name
+#     tests/engines/check.sh [slurm] [snakemake] [kubernetes] [ray] [container] [s3]     all without a name
 #
-# TOILE is the program, built anew without one; WHEEL is the wheel, the newest of python/target/wheels without one.
+# TOILE is the program, built anew without one; TOILE_STORES the one with object stores, for s3; WHEEL is the wheel, the newest of
+# python/target/wheels without one, which s3 alone does not need. GARMENTS is how many of the 24 are run, at least 7, of which one fails.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 root="$PWD"
 
 engines=("$@")
-[ ${#engines[@]} -gt 0 ] || engines=(slurm snakemake kubernetes ray container)
+[ ${#engines[@]} -gt 0 ] || engines=(slurm snakemake kubernetes ray container s3)
 
 if [ -z "${TOILE:-}" ]; then
     cargo build --release --locked -p toile
     TOILE="${CARGO_TARGET_DIR:-target}/release/toile"
 fi
-# shellcheck disable=SC2012
-wheel="${WHEEL:-$(ls -t python/target/wheels/*.whl | head -1)}"
 environment=target/engines
 [ -x "$environment/bin/pip" ] || python3 -m venv "$environment"
-"$environment/bin/pip" install --quiet -r tests/engines/requirements.txt "$wheel"
-# One of the same version may be there.
-"$environment/bin/pip" install --quiet --no-deps --force-reinstall "$wheel"
+if [ "${engines[*]}" != s3 ]; then
+    # shellcheck disable=SC2012
+    wheel="${WHEEL:-$(ls -t python/target/wheels/*.whl | head -1)}"
+    "$environment/bin/pip" install --quiet -r tests/engines/requirements.txt "$wheel"
+    # One of the same version may be there.
+    "$environment/bin/pip" install --quiet --no-deps --force-reinstall "$wheel"
+fi
 # The wheel brings a command `toile` of its own: where there are two, the program comes first.
 scratch="$(mktemp -d)"
 chmod 755 "$scratch"
@@ -56,7 +59,7 @@ trap 'exit 143' TERM
 pipeline="$root/pipelines/scene.ron"
 set_file="$scratch/set/set.jsonl"
 options=(--quality Standard --no-cache)
-python tests/engines/garments.py pipelines/samples "$scratch/set"
+python tests/engines/garments.py pipelines/samples "$scratch/set" "${GARMENTS:-24}"
 
 # Runs a step to its first failure, and says what it took. No caller may ask for its result: that would let failures pass.
 timed() {
@@ -90,7 +93,7 @@ awaited() {
 # The folder of an engine against the undisturbed one.
 compared() { python tests/engines/compare.py "$scratch/reference" "$1"; }
 
-# Two of the garments fail, so the exit code is 4.
+# Some of the garments fail, so the exit code is 4.
 undisturbed() {
     local code=0
     toile batch "$set_file" --pipeline "$pipeline" --out "$1" "${options[@]}" || code=$?
@@ -217,6 +220,51 @@ container() {
     buildah "${store[@]}" rm "$name"
 }
 
+# A server of S3 from the Python index, and the manifest with its files in a bucket.
+s3_started() {
+    local port
+    "$environment/bin/pip" install --quiet -r tests/engines/requirements-s3.txt
+    port="$(python -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')"
+    export AWS_ACCESS_KEY_ID=toile AWS_SECRET_ACCESS_KEY=toile AWS_REGION=us-east-1 AWS_DEFAULT_REGION=us-east-1
+    export AWS_ENDPOINT_URL="http://127.0.0.1:$port" AWS_ALLOW_HTTP=true
+    moto_server -H 127.0.0.1 -p "$port" >"$scratch/moto.log" 2>&1 &
+    daemons+=($!)
+    awaited python tests/engines/s3.py make toile "$scratch/set" in
+}
+
+# Two shares, each in an empty folder of its own. The first one is killed when its second garment is in the store, and started
+# again in another empty folder.
+s3() {
+    local code=0 killed other
+    local batch=("$stores" batch s3://toile/in/set.jsonl --pipeline "$pipeline" --out s3://toile/out "${options[@]}" --jobs 1)
+    "${batch[@]}" --shard 2/2 --work "$scratch/work/second" &
+    other=$!
+    "${batch[@]}" --shard 1/2 --work "$scratch/work/killed" &
+    killed=$!
+    awaited python tests/engines/s3.py has toile out/garments/skirt3/record.json
+    kill -9 "$killed"
+    wait "$killed" || code=$?
+    test "$code" -eq 137
+    echo "    killed; in the store are $(python tests/engines/s3.py count toile out/ /record.json) records"
+    code=0
+    "${batch[@]}" --shard 1/2 --work "$scratch/work/first" || code=$?
+    # A garment of this share fails.
+    test "$code" -eq 4
+    wait "$other" || test $? -eq 4
+    python tests/engines/s3.py fetch toile out "$1"
+}
+
+# The results of all shares once more, from an empty folder, when nobody has written them.
+s3_merged() {
+    local batch=("$stores" batch s3://toile/in/set.jsonl --pipeline "$pipeline" --out s3://toile/out "${options[@]}")
+    python tests/engines/s3.py remove toile out/results.jsonl out/costs.jsonl out/index.html
+    "${batch[@]}" --merge --work "$scratch/work/merged" || test $? -eq 4
+    test ! -d "$scratch/work/merged/garments"
+    python tests/engines/s3.py fetch toile out "$1"
+    # And a bucket that is not there.
+    "${batch[@]/s3:\/\/toile\/out/s3://none/out}" --work "$scratch/work/none" || test $? -eq 3
+}
+
 timed undisturbed undisturbed "$scratch/reference"
 
 for engine in "${engines[@]}"; do
@@ -260,6 +308,22 @@ for engine in "${engines[@]}"; do
             timed container container "$scratch/container_out"
             grep '^size: ' "$scratch/container.log" | sed 's/^/    /'
             compared "$scratch/container_out"
+            ;;
+        s3)
+            stores="${TOILE_STORES:-}"
+            if [ -z "$stores" ]; then
+                cargo build --release --locked -p toile --features object-store --target-dir target/stores
+                stores="$root/target/stores/release/toile"
+            fi
+            s3_started
+            timed s3 s3 "$scratch/s3_out"
+            grep '^    killed' "$scratch/s3.log"
+            # What the killed one had sent is not run again.
+            grep -E 'in this share: [0-9]+ to run, [1-9][0-9]* done' "$scratch/s3.log" | sed 's/^/    /'
+            compared "$scratch/s3_out"
+            timed s3_merged s3_merged "$scratch/s3_merged"
+            grep -A 1 '^error: there is no bucket "s3://none"' "$scratch/s3_merged.log" | sed 's/^/    /'
+            compared "$scratch/s3_merged"
             ;;
         *)
             echo "no such engine: $engine"

@@ -12,14 +12,19 @@ use toile_pipeline::cache::Bytes;
 #[derive(Debug, Clone, Args)]
 pub(crate) struct BatchArgs {
     /// The manifest: a garment a line, as `toile manifest` writes it; paths in it are relative to
-    /// its folder
+    /// its folder. It may lie in an object store, like s3://bucket/set.jsonl
     pub(crate) manifest: PathBuf,
     /// The pipeline that every garment is run through
     #[arg(long, value_name = "FILE")]
     pub(crate) pipeline: PathBuf,
-    /// Folder for the results; a batch that was stopped goes on in it [default: out/NAME]
+    /// Folder for the results; a batch that was stopped goes on in it. It may lie in an object
+    /// store, like s3://bucket/out [default: out/NAME]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
+    /// Folder of this machine for a batch whose results are sent to an object store [default:
+    /// out/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) work: Option<PathBuf>,
     /// Run one of so many shares of the manifest, like 3/16; all shares may write one folder
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     pub(crate) shard: Shard,
@@ -64,6 +69,9 @@ pub(crate) struct BatchArgs {
     /// Check the manifest, say what is done already, and run nothing
     #[arg(long)]
     pub(crate) check: bool,
+    /// Run nothing, and write the results of all shares, as the last one does at its end
+    #[arg(long, conflicts_with_all = ["check", "deadline", "only", "retry_only", "shard"])]
+    pub(crate) merge: bool,
     /// Print one JSON object and nothing else: how many garments ended how
     #[arg(long)]
     pub(crate) json: bool,

@@ -100,19 +100,20 @@ impl BatchFolder {
         let _ = fs::remove_dir_all(old);
         Ok(())
     }
-
-    /// Holds what all shares write, until it is dropped; none on a file system without locks.
-    pub(crate) fn shared(&self) -> Option<File> {
-        let file = File::options().create(true).append(true).open(self.root.join("locks/results")).ok()?;
-        file.lock().ok()?;
-        Some(file)
-    }
 }
 
 impl Drop for BatchFolder {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.work);
     }
+}
+
+/// Holds what all shares of a folder write, until it is dropped; none on a file system without
+/// locks.
+pub(crate) fn shared(root: &Path) -> Option<File> {
+    let file = File::options().create(true).append(true).open(root.join("locks/results")).ok()?;
+    file.lock().ok()?;
+    Some(file)
 }
 
 /// Where a garment of a folder lies.
@@ -195,7 +196,9 @@ fn holds_times(name: &str) -> bool {
 }
 
 /// The names of all files below a folder.
-fn below(folder: &Path, before: &str, names: &mut Vec<String>) -> std::io::Result<()> {
+///
+/// Errors: a folder that cannot be read.
+pub(crate) fn below(folder: &Path, before: &str, names: &mut Vec<String>) -> std::io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let name = format!("{before}{}", entry.file_name().to_string_lossy());

@@ -2,9 +2,10 @@
 
 use super::child::leave_reason;
 use super::folder::{BatchFolder, contents, emptied};
+use super::mirror::Mirror;
 use super::overrides;
 use super::plan::BatchPlan;
-use super::pool::{EndedGarment, GarmentEnd, Garments};
+use super::pool::{AfterGarment, EndedGarment, GarmentEnd, Garments};
 use super::record::{self, CostLine, FileDigests, GarmentRecord, ReadFiles, ResultLine, relative};
 use super::task::{GarmentAnswer, GarmentTask};
 use crate::args::BatchArgs;
@@ -13,6 +14,7 @@ use crate::validate::open;
 use crate::verify::write_text;
 use crate::{Streams, at_hand, cache};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_core::Registry;
 use toile_core::cost::Predicted;
@@ -30,7 +32,13 @@ pub(crate) struct GarmentKeeper<'a, 'b> {
     cache_dir: Option<PathBuf>,
     /// Garments that are through.
     through: usize,
+    mirror: &'a Mirror,
+    /// How often garments were run again for a file that they lacked, by their places.
+    again: BTreeMap<usize, usize>,
 }
+
+/// How often a garment is run again for files that it lacked: each may name the next.
+const MOST_AGAIN: usize = 8;
 
 impl<'a, 'b> GarmentKeeper<'a, 'b> {
     pub(crate) fn new(
@@ -40,13 +48,15 @@ impl<'a, 'b> GarmentKeeper<'a, 'b> {
         registry: &'a Registry,
         streams: &'a mut Streams<'b>,
         forecasts: bool,
+        mirror: &'a Mirror,
     ) -> Self {
         // Each garment's process takes the cache by its full path: it works in another folder.
         let full =
             |cache: std::sync::Arc<toile_pipeline::cache::Cache>| std::path::absolute(cache.folder()).ok();
         let cache_dir = cache::chosen(&args.cache, streams).and_then(full);
         let costs = forecasts.then(|| KnownCosts::of(&args.cache, Some(1)));
-        GarmentKeeper { args, plan, folder, registry, streams, costs, cache_dir, through: 0 }
+        let (through, again) = Default::default();
+        GarmentKeeper { args, plan, folder, registry, streams, costs, cache_dir, through, mirror, again }
     }
 
     /// The record of a garment whose process answered.
@@ -142,7 +152,7 @@ impl Garments for GarmentKeeper<'_, '_> {
         })
     }
 
-    fn ended(&mut self, garment: EndedGarment) -> Result<(), String> {
+    fn ended(&mut self, garment: EndedGarment) -> Result<AfterGarment, String> {
         let EndedGarment { place, end, seconds, peak } = garment;
         let id = self.plan.garments[place].id.clone();
         let answer = match end {
@@ -152,11 +162,19 @@ impl Garments for GarmentKeeper<'_, '_> {
         if let Some(why) = answer.unwritten {
             return Err(format!("the garment \"{id}\" cannot be kept: {why}"));
         }
+        if self.mirror.brings_missing(&answer.reads).map_err(|e| e.to_string())? {
+            let again = self.again.entry(place).or_default();
+            *again += 1;
+            if *again <= MOST_AGAIN {
+                return Ok(AfterGarment::Again);
+            }
+        }
         let record = self.answered(place, answer, seconds, peak);
         let text = serde_json::to_string(&record).map_err(|e| e.to_string())? + "\n";
         write_text(&self.folder.garment_at_work(&id).join(record::FILE), &text).map_err(|e| e.to_string())?;
         self.folder.publish(&id).map_err(|e| e.to_string())?;
         self.tell(&record);
-        Ok(())
+        self.mirror.send(&id).map_err(|e| e.to_string())?;
+        Ok(AfterGarment::Kept)
     }
 }

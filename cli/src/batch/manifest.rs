@@ -200,11 +200,18 @@ fn as_ron(path: &str, text: &str) -> String {
     }
 }
 
-/// The files that lines name and that are not there.
-pub(crate) fn missing(garments: &[GarmentLine], folders: [&Path; 2]) -> Vec<LineFault> {
+/// The files that lines name and that are not there: neither in these folders nor in the store, of
+/// which `is_stored` tells.
+pub(crate) fn missing(
+    garments: &[GarmentLine],
+    folders: [&Path; 2],
+    is_stored: &dyn Fn(&str) -> bool,
+) -> Vec<LineFault> {
     let missing = |g: &GarmentLine| {
         let files = g.set.iter().filter_map(|o| Some((&o.path, at_hand::named(o)?)));
-        let gone = files.filter(|(_, file)| !folders.iter().any(|folder| folder.join(file).is_file()));
+        let gone = files.filter(|(_, file)| {
+            !is_stored(file) && !folders.iter().any(|folder| folder.join(file).is_file())
+        });
         gone.map(|(path, file)| LineFault {
             line: g.line,
             message: format!("there is no file \"{file}\" (\"{path}\") beside the manifest or the pipeline"),
@@ -286,7 +293,8 @@ mod tests {
         let (garments, _) = parse(["a", "b", "c"].map(line).concat().as_bytes());
         let words =
             "line 3: there is no file \"c.json\" (\"pattern.file\") beside the manifest or the pipeline";
-        let told = missing(&garments, [&beside, &pipeline]);
+        let told = missing(&garments, [&beside, &pipeline], &|_| false);
         assert_eq!(told.iter().map(ToString::to_string).collect::<Vec<_>>(), [words]);
+        assert_eq!(missing(&garments, [&beside, &pipeline], &|file| file == "c.json"), []);
     }
 }

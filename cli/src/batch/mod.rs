@@ -14,6 +14,7 @@
 //! - `keep`: what came of a garment, put into its place with its `record`; `folder`: the output
 //!   folder and its locks.
 //! - `summary`, `tally`, `page`: what all shares write together.
+//! - `mirror`: manifests and results in object stores.
 //!
 //! docs/reference/batch.md has the files and their fields.
 
@@ -24,6 +25,7 @@ mod keep;
 pub(crate) mod make;
 pub(crate) mod manifest;
 mod memory;
+mod mirror;
 mod names;
 mod page;
 mod plan;
@@ -44,13 +46,14 @@ use crate::{Streams, at_hand, exit};
 use folder::BatchFolder;
 use keep::GarmentKeeper;
 use manifest::{GarmentLine, LineFault};
+use mirror::Mirror;
 use plan::BatchPlan;
 use pool::PoolLimits;
 use quality::{Means, Timed};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tally::{BatchTally, Tallies};
+use tally::{BatchTally, Tallies, counted};
 use toile_core::{Cancel, Registry, StageError};
 use toile_pipeline::Faults;
 
@@ -62,7 +65,11 @@ pub(crate) fn batch(args: &BatchArgs, registry: &Registry, streams: &mut Streams
     if let Err(e) = stdin::refused(&args.pipeline, "is read again by every garment") {
         return streams.refuse(args.json, e);
     }
-    let bytes = match toile_core::read_file(&args.manifest) {
+    let (local, mirror) = match Mirror::open(args) {
+        Ok(opened) => opened,
+        Err(e) => return refused(&e, args.json, streams),
+    };
+    let bytes = match toile_core::read_file(&local.manifest) {
         Ok(bytes) => bytes,
         Err(e) => {
             let name = args.manifest.display();
@@ -70,8 +77,12 @@ pub(crate) fn batch(args: &BatchArgs, registry: &Registry, streams: &mut Streams
         }
     };
     let (garments, mut faults) = manifest::parse(&bytes);
-    let folders = [folder_of(&args.manifest), folder_of(&args.pipeline)];
-    let gone = manifest::missing(&garments, folders.each_ref().map(PathBuf::as_path));
+    let folders = [folder_of(&local.manifest), folder_of(&args.pipeline)];
+    if let Err(e) = mirror.look_at_inputs(&garments) {
+        return refused(&e, args.json, streams);
+    }
+    let has_input = |file: &str| mirror.has_input(file);
+    let gone = manifest::missing(&garments, folders.each_ref().map(PathBuf::as_path), &has_input);
     let is_whole = |g: &GarmentLine| gone.iter().all(|fault| fault.line != g.line);
     let garments: Vec<GarmentLine> = garments.iter().filter(|g| is_whole(g)).cloned().collect();
     faults.extend(gone);
@@ -85,10 +96,15 @@ pub(crate) fn batch(args: &BatchArgs, registry: &Registry, streams: &mut Streams
     if let Some(id) = args.only.iter().find(|id| garments.iter().all(|g| g.id != **id)) {
         return streams.refuse(args.json, format!("the manifest has no garment \"{id}\""));
     }
-    if let Err(faults) = loads(args, &folders[0], &garments, registry) {
+    // The first one's files are looked at by every share.
+    let own = garments.iter().enumerate().filter(|(i, _)| *i == 0 || !args.merge && args.shard.has(*i));
+    if let Err(e) = mirror.bring_inputs(own.map(|(_, g)| g)) {
+        return refused(&e, args.json, streams);
+    }
+    if let Err(faults) = loads(&local, &folders[0], &garments, registry) {
         return fail_load(&faults, args.json, streams);
     }
-    let code = match planned(args, &folders[0], garments, registry, streams) {
+    let code = match planned(&local, &folders[0], garments, &mirror, registry, streams) {
         Ok(code) => code,
         Err(e) => return refused(&e, args.json, streams),
     };
@@ -159,6 +175,7 @@ fn planned(
     args: &BatchArgs,
     manifest_folder: &Path,
     garments: Vec<GarmentLine>,
+    mirror: &Mirror,
     registry: &Registry,
     streams: &mut Streams<'_>,
 ) -> Result<u8, StageError> {
@@ -168,8 +185,16 @@ fn planned(
         None => quality::by_error(args, manifest_folder, &garments, registry, streams)?,
         Some(_) => args.clone(),
     };
+    let of_share = garments.iter().enumerate().filter(|(place, _)| args.shard.has(*place));
+    let ids: Vec<&str> = of_share.map(|(_, g)| &*g.id).collect();
+    mirror.fetch_records(&ids)?;
+    if args.merge {
+        let plan = BatchPlan::new(&by_error, manifest_folder, &out, garments, registry, mirror)?;
+        return merged(&by_error, &plan, &out, mirror, streams);
+    }
+    mirror.fetch_reads(&ids)?;
     if args.check {
-        let plan = BatchPlan::new(&by_error, manifest_folder, &out, garments, registry)?;
+        let plan = BatchPlan::new(&by_error, manifest_folder, &out, garments, registry, mirror)?;
         return Ok(told_plan(args, &plan, streams));
     }
     let Some(program) = streams.apart.as_ref().map(|p| apart::for_command(p, "run-garment")) else {
@@ -183,26 +208,35 @@ fn planned(
     let chosen = match args.deadline {
         None => Some(Timed { args: by_error, forecast: None }),
         Some(deadline) => {
-            let means = Means { program: &program, limits: &limits, cancel: &cancel, registry, started };
+            let means =
+                Means { program: &program, limits: &limits, cancel: &cancel, registry, mirror, started };
             let folders = (manifest_folder, out.as_path());
             quality::by_deadline(args, deadline, folders, &garments, &means, streams)?
         }
     };
     let Some(Timed { args, forecast }) = &chosen else { return Ok(exit::STOPPED) };
-    let plan = BatchPlan::new(args, manifest_folder, &out, garments, registry)?;
+    let plan = BatchPlan::new(args, manifest_folder, &out, garments, registry, mirror)?;
     let folder = BatchFolder::open(&out, args.shard)?;
     streams.notice(plan.words());
+    if mirror.has_results() {
+        send_unsent(args, &plan, &folder, mirror, streams)?;
+    }
     args.deadline.iter().for_each(|deadline| stop_after(quality::left(*deadline, started), &cancel));
-    let mut keeper = GarmentKeeper::new(args, &plan, &folder, registry, streams, limits.jobs > 1);
+    let mut keeper = GarmentKeeper::new(args, &plan, &folder, registry, streams, limits.jobs > 1, mirror);
     let ran = pool::run(&program, plan.run.iter().copied(), &limits, &cancel, &mut keeper);
     interrupt::begin_writing();
-    let tallies = summary::write(&folder, &plan.garments, &plan.tickets, args.shard)?;
+    let sent = mirror.end_sending(&cancel);
+    let tallies = summary::write(folder.root(), &plan, args.shard, mirror, sent == Ok(0))?;
+    let unsent = sent?;
+    if unsent > 0 {
+        streams.warn(format!("{} not sent yet; the next start sends them", counted(unsent)));
+    }
     if let Err(why) = ran {
         return Err(StageError::invalid(why)
             .hint("what was done before is kept: start the batch again, and it goes on from there"));
     }
     let is_stopped = cancel.is_cancelled();
-    tell_end(args, &folder, &tallies, is_stopped, streams);
+    tell_end(args, &mirror.results_in_words(folder.root()), &tallies, is_stopped, streams);
     if let (Some(forecast), false) = (forecast, is_stopped) {
         let took = quality::in_words(started.elapsed().as_secs_f64());
         streams
@@ -214,6 +248,43 @@ fn planned(
         (false, false) => exit::QUALITY,
         (false, true) => exit::DONE,
     })
+}
+
+/// Sends the garments of the share that were done before and that the store has not.
+fn send_unsent(
+    args: &BatchArgs,
+    plan: &BatchPlan,
+    folder: &BatchFolder,
+    mirror: &Mirror,
+    streams: &mut Streams<'_>,
+) -> Result<(), StageError> {
+    let mut sent = 0;
+    for record in plan.done(folder.root(), args.shard) {
+        sent += usize::from(mirror.send_unsent(&record.line.id, &record)?);
+    }
+    if sent > 0 {
+        streams.notice(format!("{} done before, and sent now", counted(sent)));
+    }
+    Ok(())
+}
+
+/// Writes the results of all shares, by what is done.
+fn merged(
+    args: &BatchArgs,
+    plan: &BatchPlan,
+    out: &Path,
+    mirror: &Mirror,
+    streams: &mut Streams<'_>,
+) -> Result<u8, StageError> {
+    let root = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
+    let name = mirror.results_in_words(&root);
+    if summary::done(&root, plan, mirror).is_empty() {
+        return Err(StageError::invalid(format!("\"{name}\" holds no garment of this batch"))
+            .hint("run it first; pipeline, values and options have to be those that it was run with"));
+    }
+    let tallies = summary::write(&root, plan, args.shard, mirror, true)?;
+    tell_end(args, &name, &tallies, false, streams);
+    Ok(if tallies.all.faults.is_empty() { exit::DONE } else { exit::QUALITY })
 }
 
 /// Stops the batch after so many seconds, as Ctrl-C does.
@@ -252,19 +323,18 @@ fn limits(args: &BatchArgs) -> PoolLimits {
 
 fn tell_end(
     args: &BatchArgs,
-    folder: &BatchFolder,
+    results: &str,
     Tallies { all, share }: &Tallies,
     is_stopped: bool,
     streams: &mut Streams<'_>,
 ) {
-    let page = folder.root().join("index.html");
     let counts = |t: &BatchTally| json!({ "garments": t.garments, "good": t.good, "faults": t.faults, "left": t.left() });
     match args.json {
         true => {
             let mut record = counts(all);
             record["share"] = counts(share);
             record["stopped"] = is_stopped.into();
-            record["folder"] = folder.root().display().to_string().into();
+            record["folder"] = results.into();
             streams.say(record);
         }
         false => {
@@ -272,7 +342,7 @@ fn tell_end(
                 streams.report(format!("share {}, {}", args.shard, share.words()));
             }
             streams.report(all.words());
-            streams.report(page.display());
+            streams.report(format!("{results}/index.html"));
         }
     }
     if is_stopped {

@@ -3,11 +3,13 @@
 
 use super::folder::garment;
 use super::manifest::GarmentLine;
+use super::mirror::Mirror;
 use super::record::{FileDigests, GarmentRecord};
 use super::tally::counted;
-use crate::args::BatchArgs;
+use crate::args::{BatchArgs, Shard};
 use crate::reads::look;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{Digest, Digester};
 use toile_core::{Registry, StageError};
@@ -34,7 +36,7 @@ pub(crate) struct BatchPlan {
 }
 
 impl BatchPlan {
-    /// By what is done in the output folder.
+    /// By what is done in the output folder, or in the store.
     ///
     /// Errors: the pipeline cannot be read; no garment has ended with the fault that is asked for.
     pub(crate) fn new(
@@ -43,6 +45,7 @@ impl BatchPlan {
         out: &Path,
         garments: Vec<GarmentLine>,
         registry: &Registry,
+        mirror: &Mirror,
     ) -> Result<Self, StageError> {
         let common = common(args, registry)?;
         let tickets: Vec<Digest> = garments.iter().map(|g| ticket(&common, &g.set)).collect();
@@ -53,18 +56,35 @@ impl BatchPlan {
             .filter(|&place| args.only.is_empty() || args.only.contains(&garments[place].id))
             .collect();
         let files = FileDigests::seen_from(folder);
-        let record = |place: usize| GarmentRecord::read(&garment(out, &garments[place].id));
+        let records = |place: usize| {
+            let id = &garments[place].id;
+            GarmentRecord::read(&garment(out, id)).into_iter().chain(mirror.record(id))
+        };
         let runs = |place: &usize| match (&args.retry_only[..], &args.only[..]) {
-            ([], []) => !record(*place).is_some_and(|r| r.is_of(&tickets[*place], &files)),
+            ([], []) => !records(*place).any(|r| r.is_of(&tickets[*place], &files)),
             ([], _) => true,
             (kinds, _) => {
-                let fault = record(*place).and_then(|r| r.line.fault.fault);
-                fault.is_some_and(|fault| kinds.contains(&fault))
+                records(*place).filter_map(|r| r.line.fault.fault).any(|fault| kinds.contains(&fault))
             }
         };
         let run: Vec<usize> = asked.par_iter().copied().filter(runs).collect();
         let not_run = share.len() - run.len();
         Ok(BatchPlan { tickets, folder: folder.to_owned(), share: share.len(), not_run, run, garments })
+    }
+
+    /// The garments of the share that are done in the output folder, with their records.
+    pub(crate) fn done<'a>(
+        &'a self,
+        out: &'a Path,
+        shard: Shard,
+    ) -> impl Iterator<Item = GarmentRecord> + 'a {
+        let files = FileDigests::seen_from(&self.folder);
+        let is_run: BTreeSet<usize> = self.run.iter().copied().collect();
+        let left = move |place: &usize| shard.has(*place) && !is_run.contains(place);
+        (0..self.garments.len()).filter(left).filter_map(move |place| {
+            let record = GarmentRecord::read(&garment(out, &self.garments[place].id))?;
+            record.is_of(&self.tickets[place], &files).then_some(record)
+        })
     }
 
     /// `200 garments, 100 in this share: 20 are run, 80 are not`.

@@ -55,6 +55,14 @@ pub(crate) struct EndedGarment {
     pub(crate) peak: u64,
 }
 
+/// What is to be done with a garment that is through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AfterGarment {
+    Kept,
+    /// It lacked a file that is there now.
+    Again,
+}
+
 /// What is asked of the pool's owner.
 pub(crate) trait Garments {
     /// What a garment is expected to take, bytes.
@@ -66,7 +74,7 @@ pub(crate) trait Garments {
     /// Keeps what came of it.
     ///
     /// Errors: a sentence that ends the batch.
-    fn ended(&mut self, garment: EndedGarment) -> Result<(), String>;
+    fn ended(&mut self, garment: EndedGarment) -> Result<AfterGarment, String>;
 }
 
 /// EndedFor a process is ended from here.
@@ -151,7 +159,11 @@ pub(crate) fn run(
                     at_work.remove(&through.place);
                     let place = through.place;
                     let kept = match told(through, limits) {
-                        Ok(Some(garment)) => garments.ended(garment),
+                        Ok(Some(garment)) => garments.ended(garment).map(|after| {
+                            if after == AfterGarment::Again {
+                                queue.push_front((place, None));
+                            }
+                        }),
                         Ok(None) if !stop.load(Ordering::SeqCst) => {
                             queue.push_back((place, Some(limits.memory)));
                             Ok(())

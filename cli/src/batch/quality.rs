@@ -10,6 +10,7 @@
 use super::folder::{BatchFolder, garment};
 use super::keep::GarmentKeeper;
 use super::manifest::GarmentLine;
+use super::mirror::Mirror;
 use super::plan::BatchPlan;
 use super::pool::{self, PoolLimits};
 use super::record::GarmentRecord;
@@ -40,6 +41,7 @@ pub(crate) struct Means<'a> {
     pub(crate) limits: &'a PoolLimits,
     pub(crate) cancel: &'a Cancel,
     pub(crate) registry: &'a Registry,
+    pub(crate) mirror: &'a Mirror,
     /// When the batch was started.
     pub(crate) started: Instant,
 }
@@ -220,9 +222,11 @@ fn piloted(
     means: &Means<'_>,
     streams: &mut Streams<'_>,
 ) -> Result<Option<f64>, StageError> {
-    let plan = BatchPlan::new(args, manifest_folder, out, garments.to_vec(), means.registry)?;
+    let plan = BatchPlan::new(args, manifest_folder, out, garments.to_vec(), means.registry, means.mirror)?;
     let folder = BatchFolder::open(out, args.shard)?;
-    let mut keeper = GarmentKeeper::new(args, &plan, &folder, means.registry, streams, means.limits.jobs > 1);
+    let forecasts = means.limits.jobs > 1;
+    let mut keeper =
+        GarmentKeeper::new(args, &plan, &folder, means.registry, streams, forecasts, means.mirror);
     pool::run(means.program, plan.run.iter().copied(), means.limits, means.cancel, &mut keeper)
         .map_err(StageError::invalid)?;
     if means.cancel.is_cancelled() {

@@ -71,3 +71,47 @@ fn ctrl_c_keeps_what_is_done() {
     assert!(out.starts_with("4 garments: 3 good, 1 not run yet\n"), "{out}");
     assert!(err.ends_with("stopped; started again, the batch goes on from here\n"), "{err}");
 }
+
+/// A share that was killed before it wrote the results of all leaves that to `--merge`.
+#[test]
+fn results_of_all_shares_are_written_without_a_run() {
+    let dir = set(4);
+    assert_eq!(ran(batch(dir.path(), "whole", &[])).0, Some(0));
+    for share in ["1/2", "2/2"] {
+        assert_eq!(ran(batch(dir.path(), "out", &["--shard", share])).0, Some(0));
+    }
+    for name in ["results.jsonl", "costs.jsonl", "index.html"] {
+        std::fs::remove_file(dir.path().join("out").join(name)).unwrap();
+    }
+    let (code, out, err) = ran(batch(dir.path(), "out", &["--merge"]));
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert!(out.starts_with("4 garments: 4 good\n"), "{out}");
+    assert!(content(dir.path(), "out") == content(dir.path(), "whole"));
+    // A garment that has not been run is told and not run.
+    std::fs::remove_dir_all(dir.path().join("out/garments/g2")).unwrap();
+    let (code, out, _) = ran(batch(dir.path(), "out", &["--merge"]));
+    assert_eq!(code, Some(0));
+    assert!(out.starts_with("4 garments: 3 good, 1 not run yet\n"), "{out}");
+    assert!(!dir.path().join("out/garments/g2").exists());
+}
+
+#[test]
+fn results_of_another_batch_are_not_written_over() {
+    let dir = set(2);
+    assert_eq!(ran(batch(dir.path(), "out", &[])).0, Some(0));
+    let before = content(dir.path(), "out");
+    let (code, _, err) = ran(batch(dir.path(), "out", &["--merge", "--no-verify"]));
+    let root = dir.path().join("out").display().to_string();
+    assert_eq!(
+        (code, err),
+        (
+            Some(3),
+            format!(
+                "error: \"{root}\" holds no garment of this batch\n  help: run it first; pipeline, values and options have to be those that it was run with\n"
+            )
+        )
+    );
+    assert!(content(dir.path(), "out") == before);
+    let (code, _, err) = ran(batch(dir.path(), "out", &["--merge", "--shard", "1/2"]));
+    assert_eq!(code, Some(2), "{err}");
+}

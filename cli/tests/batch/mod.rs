@@ -5,6 +5,7 @@ mod killed;
 mod manifests;
 mod qualities;
 mod results;
+mod stores;
 
 use crate::sheet::sheet;
 use serde_json::{Value, json};
