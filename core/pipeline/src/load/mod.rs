@@ -23,6 +23,7 @@
 mod asked;
 mod by_place;
 mod differing;
+mod edit;
 mod fault;
 mod graph;
 mod json;
@@ -47,13 +48,14 @@ pub(crate) mod tests;
 pub(crate) use asked::warnings;
 pub use asked::{Reads, faults};
 pub use differing::{Differing, differing};
+pub use edit::{PipelineEdit, edited};
 pub use fault::{Fault, FaultRecord, Faults, Label};
 pub(crate) use graph::before_flatteners;
 pub use json::to_json;
 pub use migrate::{Migrated, migrate};
 use overrides::Given;
 pub use pipeline::Pipeline;
-pub use plugins::{PluginUse, asked as plugins_asked};
+pub use plugins::{PluginUse, asked as plugins_asked, known as with_plugins};
 pub use qualities::{
     Basis, MAX_QUALITIES, MAX_SETTINGS, Quality, Standing, fill as fill_qualities,
     without as without_qualities,

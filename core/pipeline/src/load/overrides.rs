@@ -66,6 +66,9 @@ impl<'a> Given<'a> {
     }
 }
 
+/// What parts a field that is put in from the next one.
+pub(super) const NEXT: &str = ", ";
+
 /// What stands before the path on the command line.
 const OPTION: &str = "--set ";
 
@@ -104,11 +107,11 @@ impl Applied {
 }
 
 /// A change of the text.
-struct Edit {
-    at: Range<usize>,
-    before: String,
-    value: String,
-    after: String,
+pub(super) struct Edit {
+    pub(super) at: Range<usize>,
+    pub(super) before: String,
+    pub(super) value: String,
+    pub(super) after: String,
 }
 
 impl Edit {
@@ -118,7 +121,7 @@ impl Edit {
 
     /// Puts `key: value` first into a group.
     fn insert(inside: usize, entries: &[GroupEntry], key: &str, value: &str) -> Self {
-        let after = if entries.is_empty() { "" } else { ", " };
+        let after = if entries.is_empty() { "" } else { NEXT };
         Edit {
             at: inside..inside,
             before: format!("{key}: "),
@@ -130,14 +133,47 @@ impl Edit {
 
 /// The edit of the text for one override, and the offset at which the user's value begins within
 /// the inserted text.
-fn edit(text: &str, tree: &ValueTree, registry: &Registry, given: Given<'_>) -> Result<(Edit, usize), Fault> {
+pub(super) fn edit(
+    text: &str,
+    tree: &ValueTree,
+    registry: &Registry,
+    given: Given<'_>,
+) -> Result<(Edit, usize), Fault> {
     let o = given.o;
     let value = parse(&o.value).map_err(|e| bad_value(given, &e))?;
+    let written = &o.value[value.span.clone()];
+    let edit = match spot(text, tree, registry, given)? {
+        PathSpot::There { entries, number } => Edit::replace(&entries[number].value.span, written),
+        PathSpot::Free { inside, entries, key } => Edit::insert(inside, entries, &key, written),
+        PathSpot::Beside { inside, field, first } => {
+            let after = format!(", {first}: ");
+            Edit { after, ..Edit::insert(inside, &[], &field, written) }
+        }
+    };
+    Ok((edit, value.span.start))
+}
+
+/// Where a path leads in a text.
+pub(super) enum PathSpot<'t> {
+    /// To a value that is there: the entries of its group, and its number among them.
+    There { entries: &'t [GroupEntry], number: usize },
+    /// To a field that its group does not give: the byte after the group's bracket.
+    Free { inside: usize, entries: &'t [GroupEntry], key: String },
+    /// To a parameter beside the one value without a name, which is that of the parameter `first`.
+    Beside { inside: usize, field: String, first: &'static str },
+}
+
+/// Follows the path of an override.
+pub(super) fn spot<'t>(
+    text: &str,
+    tree: &'t ValueTree,
+    registry: &Registry,
+    given: Given<'_>,
+) -> Result<PathSpot<'t>, Fault> {
     let read = read::file(text, tree, (registry, false), &mut Vec::new());
-    let segments: Vec<&str> = o.path.split('.').collect();
-    let value_at = value.span.start;
-    let walk = OverrideWalk { text, registry, given, value: &o.value[value.span], segments: &segments };
-    Ok((walk.top(tree, &read.sections, &read.stages)?, value_at))
+    let segments: Vec<&str> = given.o.path.split('.').collect();
+    let walk = OverrideWalk { text, registry, given, segments: &segments };
+    walk.top(tree, &read.sections, &read.stages)
 }
 
 fn bad_value(given: Given<'_>, e: &Fault) -> Fault {
@@ -159,13 +195,17 @@ struct OverrideWalk<'a> {
     text: &'a str,
     registry: &'a Registry,
     given: Given<'a>,
-    value: &'a str,
     segments: &'a [&'a str],
 }
 
 impl OverrideWalk<'_> {
-    /// The edit for a path whose first segment is a field of the file.
-    fn top(&self, tree: &ValueTree, sections: &[Draft], stages: &[Draft]) -> Result<Edit, Fault> {
+    /// For a path whose first segment is a field of the file.
+    fn top<'t>(
+        &self,
+        tree: &'t ValueTree,
+        sections: &[Draft],
+        stages: &[Draft],
+    ) -> Result<PathSpot<'t>, Fault> {
         let field = self.segments.first().copied().unwrap_or("");
         let known = read::top_level(self.registry);
         let ValueShape::Group { name: None, bracket: Bracket::Round, inside, entries } = &tree.shape else {
@@ -174,42 +214,44 @@ impl OverrideWalk<'_> {
         if !known.contains(&field) {
             return Err(self.no_path(0, &format!("a pipeline has no field `{field}`"), &known));
         }
-        let Some((key, value)) = self.entry(entries, field) else {
+        let Some(number) = self.number(entries, field) else {
             return match self.segments.len() {
-                1 => Ok(Edit::insert(*inside, entries, field, self.value)),
+                1 => Ok(PathSpot::Free { inside: *inside, entries, key: field.to_owned() }),
                 _ => {
                     let fault = self.fault(0, format!("the file has no `{field}`"));
                     Err(fault.hint(format!("set all of it: `{}`", self.given.written(field, "..."))))
                 }
             };
         };
-        let section = sections.iter().find(|d| d.span == value.span && d.place != *key);
-        match (field, section) {
-            _ if self.segments.len() == 1 => Ok(Edit::replace(&value.span, self.value)),
-            ("stages", _) => self.in_list(value, stages),
+        let GroupEntry { key, value } = &entries[number];
+        let is_stage = |d: &&Draft| d.span == value.span && key.as_ref() != Some(&d.place);
+        match (field, sections.iter().find(is_stage)) {
+            _ if self.segments.len() == 1 => Ok(PathSpot::There { entries, number }),
+            ("stages", _) => self.in_list(value.entries(), stages),
             (_, Some(draft)) => self.in_stage(1, value, draft),
-            _ => self.inside(1, value),
+            _ => self.inside(1, entries, number),
         }
     }
 
     /// `stages.ID...`
-    fn in_list(&self, list: &ValueTree, stages: &[Draft]) -> Result<Edit, Fault> {
+    fn in_list<'t>(&self, entries: &'t [GroupEntry], stages: &[Draft]) -> Result<PathSpot<'t>, Fault> {
         let id = self.segments[1];
-        let Some(draft) = stages.iter().find(|d| d.id == id) else {
+        let draft = stages.iter().find(|d| d.id == id);
+        let number = draft.and_then(|d| entries.iter().position(|e| e.value.span == d.span));
+        let (Some(draft), Some(number)) = (draft, number) else {
             let ids: Vec<&str> = stages.iter().map(|d| d.id.as_str()).collect();
             return Err(self.no_path(1, &format!("no stage in `stages` has the id `{id}`"), &ids));
         };
-        let item = list.entries().iter().find(|e| e.value.span == draft.span);
-        match item {
-            Some(item) if self.segments.len() > 2 => self.in_stage(2, &item.value, draft),
-            _ => Ok(Edit::replace(&draft.span, self.value)),
+        match self.segments.len() > 2 {
+            true => self.in_stage(2, &entries[number].value, draft),
+            false => Ok(PathSpot::There { entries, number }),
         }
     }
 
     /// A parameter of a stage, at segment `i`.
-    fn in_stage(&self, i: usize, tree: &ValueTree, draft: &Draft) -> Result<Edit, Fault> {
+    fn in_stage<'t>(&self, i: usize, tree: &'t ValueTree, draft: &Draft) -> Result<PathSpot<'t>, Fault> {
         let field = self.segments[i];
-        let params: Vec<&str> =
+        let params: Vec<&'static str> =
             draft.card.iter().flat_map(|c| &c.params).map(|p| p.name).chain(GENERIC).collect();
         let ValueShape::Group { inside, entries, .. } = &tree.shape else {
             return Err(self.fault(i - 1, format!("`{}` has no brackets", draft.name)));
@@ -218,19 +260,18 @@ impl OverrideWalk<'_> {
             let message = format!("`{}` has no parameter `{field}`", draft.name);
             return Err(self.no_path(i, &message, &params));
         }
-        if let ([GroupEntry { key: None, value }], Some(first)) = (entries.as_slice(), params.first()) {
-            return match first == &field {
-                true => self.inside(i + 1, value),
+        if let ([GroupEntry { key: None, .. }], Some(first)) = (entries.as_slice(), params.first()) {
+            return match *first == field {
+                true => self.inside(i + 1, entries, 0),
                 // The one value without a name gets its name.
-                false => {
-                    let after = format!(", {first}: ");
-                    Ok(Edit { after, ..Edit::insert(*inside, &[], field, self.value) })
-                }
+                false => Ok(PathSpot::Beside { inside: *inside, field: field.to_owned(), first }),
             };
         }
-        match self.entry(entries, field) {
-            Some((_, value)) => self.inside(i + 1, value),
-            None if i + 1 == self.segments.len() => Ok(Edit::insert(*inside, entries, field, self.value)),
+        match self.number(entries, field) {
+            Some(number) => self.inside(i + 1, entries, number),
+            None if i + 1 == self.segments.len() => {
+                Ok(PathSpot::Free { inside: *inside, entries, key: field.to_owned() })
+            }
             None => {
                 let whole = self.segments[..=i].join(".");
                 let fault = self.fault(i, format!("the file has no `{field}`"));
@@ -239,30 +280,28 @@ impl OverrideWalk<'_> {
         }
     }
 
-    /// A value, and what is in it, at segment `i`.
-    fn inside(&self, i: usize, tree: &ValueTree) -> Result<Edit, Fault> {
-        let Some(segment) = self.segments.get(i) else { return Ok(Edit::replace(&tree.span, self.value)) };
-        let ValueShape::Group { bracket, inside, entries, .. } = &tree.shape else {
+    /// An entry of a group, and what is in it, at segment `i`.
+    fn inside<'t>(&self, i: usize, entries: &'t [GroupEntry], number: usize) -> Result<PathSpot<'t>, Fault> {
+        let Some(segment) = self.segments.get(i) else { return Ok(PathSpot::There { entries, number }) };
+        let ValueShape::Group { bracket, inside, entries, .. } = &entries[number].value.shape else {
             return Err(self.fault(i - 1, format!("`{}` has no parts", self.segments[i - 1])));
         };
-        if let Some((_, value)) = self.entry(entries, segment) {
-            return self.inside(i + 1, value);
+        if let Some(number) = self.number(entries, segment) {
+            return self.inside(i + 1, entries, number);
         }
         let named = *bracket == Bracket::Curly || entries.iter().any(|e| e.key.is_some());
         if named && i + 1 == self.segments.len() {
             let key = if *bracket == Bracket::Curly { format!("{segment:?}") } else { (*segment).to_owned() };
-            return Ok(Edit::insert(*inside, entries, &key, self.value));
+            return Ok(PathSpot::Free { inside: *inside, entries, key });
         }
         let keys = self.keys(entries);
         let known: Vec<&str> = keys.iter().map(String::as_str).collect();
         Err(self.no_path(i, &format!("`{}` has no `{segment}`", self.segments[i - 1]), &known))
     }
 
-    /// The entry of that name, or of that number in a list.
-    fn entry<'t>(&self, entries: &'t [GroupEntry], name: &str) -> Option<(&'t Range<usize>, &'t ValueTree)> {
-        let i = self.keys(entries).iter().position(|k| k == name)?;
-        let entry = entries.get(i)?;
-        Some((entry.key.as_ref().unwrap_or(&entry.value.span), &entry.value))
+    /// The number of the entry of that name; in a list its name is its number.
+    fn number(&self, entries: &[GroupEntry], name: &str) -> Option<usize> {
+        self.keys(entries).iter().position(|k| k == name)
     }
 
     fn keys(&self, entries: &[GroupEntry]) -> Vec<String> {

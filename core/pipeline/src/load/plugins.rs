@@ -87,6 +87,14 @@ pub fn asked(text: &str) -> Vec<PluginUse> {
     named.map(|e| read(text, &e.value, &mut Vec::new())).unwrap_or_default()
 }
 
+/// A registry with the stages of the plugins that a text asks for; `base` is the folder that their
+/// paths are relative to. What is refused is left out: the load of the text says why.
+pub fn known(text: &str, base: &Path, registry: &Registry) -> Registry {
+    let mut registry = registry.clone();
+    load(text, base, &mut registry);
+    registry
+}
+
 /// Loads what the text asks for into the registry; what is refused becomes a fault at its place.
 pub(super) fn load(text: &str, base: &Path, registry: &mut Registry) -> Vec<Fault> {
     let asked = asked(text);

@@ -11,6 +11,7 @@ use super::super::{Override, parse};
 use super::is_read_from;
 use super::rewrite::{Followed, Migrator, TextEdit};
 use crate::load::old_name::renamed;
+use crate::load::syntax::cut::whole;
 use crate::load::syntax::draft::Draft;
 use crate::load::syntax::tree::{GroupEntry, ValueTree};
 use std::ops::Range;
@@ -64,7 +65,7 @@ impl Migrator<'_> {
     ) {
         let Some((entries, i)) = entry(tree, at) else { return };
         let what = format!("quality {}: {} removed: {why}", quality.name, written(old));
-        self.edits.push(TextEdit { at: self.whole(entries, i), text: String::new(), what });
+        self.edits.push(TextEdit { at: whole(self.text, entries, i), text: String::new(), what });
     }
 
     fn setting(&self, o: &Override, tree: &ValueTree, drafts: &FileContents) -> MigratedSetting {

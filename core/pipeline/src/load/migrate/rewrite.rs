@@ -3,6 +3,7 @@
 use super::Migrated;
 use crate::load::fault::{Fault, LineStarts};
 use crate::load::old_name::{Now, renamed};
+use crate::load::syntax::cut::whole;
 use crate::load::syntax::tree::{GroupEntry, ValueShape, ValueTree};
 use std::ops::Range;
 use toile_core::{Change, Registry};
@@ -101,7 +102,7 @@ impl Migrator<'_> {
             Followed::Same => return,
             Followed::Removed(why) => {
                 let what = format!("{stage}: {old} removed: {why}");
-                self.edits.push(TextEdit { at: self.whole(entries, i), text: String::new(), what });
+                self.edits.push(TextEdit { at: whole(self.text, entries, i), text: String::new(), what });
                 return;
             }
             Followed::Renamed(name, new) => {
@@ -123,33 +124,6 @@ impl Migrator<'_> {
         self.edits.push(TextEdit { at: key.clone(), text: name, what });
         if !same {
             self.edits.push(TextEdit { at: entry.value.span.clone(), text: value, what: String::new() });
-        }
-    }
-
-    /// The place of an argument with its comma and the white space that only it needed; comments
-    /// stay.
-    pub(super) fn whole(&self, entries: &[GroupEntry], i: usize) -> Range<usize> {
-        let entry = &entries[i];
-        let mut start = entry.key.as_ref().map_or(entry.value.span.start, |k| k.start);
-        let mut end = entry.value.span.end;
-        let after = |at: usize| self.text.get(at..).unwrap_or("");
-        let blank = |rest: &str| rest.len() - rest.trim_start_matches([' ', '\t']).len();
-        let comma = blank(after(end));
-        if after(end + comma).starts_with(',') {
-            end += comma + 1;
-            end += blank(after(end));
-        } else if let Some(before) = i.checked_sub(1).map(|b| entries[b].value.span.end) {
-            // The last of a list without a last comma takes the comma before it.
-            let between = self.text.get(before..start).unwrap_or("");
-            if between.trim() == "," {
-                start = before;
-            }
-        }
-        let line = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
-        let alone = self.text[line..start].trim().is_empty();
-        match after(end).find('\n') {
-            Some(rest) if alone && after(end)[..rest].trim().is_empty() => line..end + rest + 1,
-            _ => start..end,
         }
     }
 

@@ -4,6 +4,7 @@ use super::read::field;
 use super::{Quality, named};
 use crate::load::fault::Fault;
 use crate::load::parse;
+use crate::load::syntax::cut::comma_after;
 use crate::load::syntax::tree::{GroupEntry, ValueShape, ValueTree};
 use std::ops::Range;
 use toile_core::param::ron_text;
@@ -108,47 +109,4 @@ fn last_in(text: &str, group: &ValueTree, entries: &[GroupEntry], lines: &str) -
         out.insert(end, ',');
     }
     out
-}
-
-/// The place behind the comma that follows a value, if one does; comments are skipped.
-fn comma_after(text: &str, from: usize) -> Option<usize> {
-    let mut at = from;
-    loop {
-        let rest = &text[at..];
-        let skipped = rest.len() - rest.trim_start().len();
-        let rest = rest.trim_start();
-        at += skipped;
-        if rest.starts_with(',') {
-            return Some(at + 1);
-        }
-        at += match (rest.starts_with("//"), rest.starts_with("/*")) {
-            (true, _) => rest.find('\n')?,
-            (_, true) => comment(rest)?,
-            _ => return None,
-        };
-    }
-}
-
-/// The length of a block comment, with those in it.
-fn comment(text: &str) -> Option<usize> {
-    let (mut depth, mut at) = (0_usize, 0);
-    while at < text.len() {
-        let rest = text.get(at..)?;
-        let step = match (rest.starts_with("/*"), rest.starts_with("*/")) {
-            (true, _) => {
-                depth += 1;
-                2
-            }
-            (_, true) => {
-                depth -= 1;
-                2
-            }
-            _ => rest.chars().next().map_or(1, char::len_utf8),
-        };
-        at += step;
-        if depth == 0 {
-            return Some(at);
-        }
-    }
-    None
 }
