@@ -2,10 +2,11 @@
 
 use crate::args::{Overrides, RunArgs};
 use crate::failing::{fail_load, fail_run};
+use crate::live::reads;
 use crate::terminal::progress::Bar;
 use crate::trading::costs::{self, KnownCosts};
 use crate::validate::{RefusedPipeline, inspect, open, warn_before_run};
-use crate::{Streams, cache, exit, lock, reads, terminal::interrupt, terminal::stdin, terminal::threads};
+use crate::{Streams, cache, exit, lock, terminal::interrupt, terminal::stdin, terminal::threads};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
 use toile_core::artifact::OutputFile;
@@ -95,6 +96,7 @@ pub(crate) fn ended(
         load: Vec::new(),
         cache,
         reads: reads.cloned(),
+        watch: None,
     };
     let outcome = under_a_bar(&pipeline, &options, args.threads, args.verbose, streams);
     match outcome {

@@ -29,4 +29,7 @@ mod run;
 pub use load::*;
 pub use metrics::{GarmentMetrics, Metrics, StageMetrics};
 pub use output::{check_folder, write_files};
-pub use run::{Outlook, RunError, RunOptions, RunResult, SoFar, add_implicit, forecast, plan, run};
+pub use run::{
+    Outlook, RunError, RunOptions, RunResult, RunWatch, SoFar, WATCHED, WatchedStage, add_implicit, forecast,
+    plan, run,
+};

@@ -48,6 +48,7 @@ pub fn forecast(
         reads: None,
         meter: None,
         expect: None,
+        watch: None,
         steps: Vec::new(),
         undone: Default::default(),
         so_far: None,

@@ -1,10 +1,10 @@
 //! If an improving stage fails, the garment at rest that it was given is kept.
 #![allow(clippy::unwrap_used)]
 
-use super::{RunError, RunOptions, RunResult, run};
+use super::{RunError, RunOptions, RunResult, RunWatch, WatchedStage, run, typed};
 use crate::load::load;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use toile_core::artifact::{OutputFile, Shortfall};
 use toile_core::prelude::*;
 use toile_core::testkit::dress;
@@ -98,6 +98,10 @@ impl Write {
 
 /// Runs these stages behind each other.
 fn ran(stages: &str) -> Result<RunResult, RunError> {
+    under(stages, RunOptions::default())
+}
+
+fn under(stages: &str, options: RunOptions) -> Result<RunResult, RunError> {
     let mut registry = Registry::new();
     registry.add::<Sew>();
     registry.add::<Pose>();
@@ -106,7 +110,7 @@ fn ran(stages: &str) -> Result<RunResult, RunError> {
     let text = format!("(name: \"improved\", stages: [{stages}])");
     let pipeline = load(&text, "improved.ron", Path::new("."), &registry, &[]).unwrap();
     let listener: Arc<dyn Listener> = Arc::new(());
-    run(&pipeline, &RunOptions::default(), &Cancel::new(), &listener)
+    run(&pipeline, &options, &Cancel::new(), &listener)
 }
 
 /// Where the first vertex lies in the end, and the warnings, each with its stage.
@@ -164,4 +168,29 @@ fn what_stands_on_nothing_good_fails_as_any_stage() {
     let message = |stages: &str| ran(stages).unwrap_err().to_string();
     assert_eq!(message("Sew(rests: false), Pose(fails: \"caught\"), Write()"), "Pose: caught");
     assert_eq!(message("Sew(), Pose(stopped: true), Write()"), "Pose: stopped on request");
+}
+
+/// Where the first vertex lies after each stage.
+#[derive(Debug, Default)]
+struct Places(Mutex<Vec<String>>);
+
+impl RunWatch for Places {
+    fn done(&self, stage: &WatchedStage<'_>) {
+        let artifacts = stage.outputs.iter().flat_map(|value| value.entries());
+        let at = artifacts.filter_map(|(_, a)| typed::<Garment>(a)).map(|g| g.positions[0].x);
+        self.0.lock().unwrap().extend(at.map(|x| format!("{} {x}", stage.id)));
+    }
+}
+
+#[test]
+fn a_watcher_is_told_of_what_is_undone_once_more() {
+    let watched = |stages: &str| {
+        let places = Arc::new(Places::default());
+        let watch: Arc<dyn RunWatch> = places.clone();
+        under(stages, RunOptions { watch: Some(watch), ..RunOptions::default() }).unwrap();
+        std::mem::take(&mut *places.0.lock().unwrap())
+    };
+    let fails = "Sew(), Pose(), Pose(id: \"Settle\", fails: \"caught\"), Write()";
+    assert_eq!(watched(fails), ["Sew 0", "Pose 1", "Pose 0", "Settle 0"]);
+    assert_eq!(watched("Sew(), Pose(), Limit(most: 0.5), Write()"), ["Sew 0", "Pose 1", "Pose 0"]);
 }

@@ -13,12 +13,15 @@ mod recall;
 mod record;
 mod so_far;
 mod steps;
+mod tell;
 mod unused;
 mod value;
+mod watch;
 
 pub use forecast::{Outlook, forecast};
 pub use implicit::add_implicit;
 pub use so_far::SoFar;
+pub use watch::{RunWatch, WATCHED, WatchedStage};
 
 use crate::cache::Cache;
 use crate::cost::{Expect, Meter, StageCost};
@@ -59,6 +62,8 @@ pub struct RunOptions {
     /// Predicts what stages take, for the record and the report; without it they hold no
     /// prediction.
     pub expect: Option<Arc<dyn Expect>>,
+    /// Is told of every stage as soon as it is done.
+    pub watch: Option<Arc<dyn RunWatch>>,
 }
 
 /// What a run gives. Nothing is written yet.
@@ -128,6 +133,7 @@ pub fn run(
         reads,
         meter: options.meter.as_deref(),
         expect: options.expect.as_deref(),
+        watch: options.watch.clone(),
         steps: Vec::new(),
         undone: BTreeMap::new(),
         so_far: None,
@@ -157,13 +163,15 @@ fn unharmed(run: &mut PipelineRun<'_>, plan: &[Option<String>]) -> Result<Vec<Fi
     );
     let (steps, undone) = (run.steps.clone(), run.undone.clone());
     let listener = std::mem::replace(&mut run.listener, Arc::new(()));
+    let watch = run.watch.take();
     run.turn_back(base, last, why);
     let first = run.steps.len();
     let without = stages(run, plan).and_then(|()| self::judged(run));
-    run.listener = listener;
+    (run.listener, run.watch) = (listener, watch);
     match without {
         Ok(without) if without.iter().all(|f| f.shortfalls.is_empty()) => {
             run.tell_again(first);
+            run.tell_watch(first)?;
             Ok(without)
         }
         _ => {
@@ -190,6 +198,7 @@ fn stages(run: &mut PipelineRun<'_>, plan: &[Option<String>]) -> Result<(), RunE
             },
             Some(reason) => run.steps.push(StageOutcome::Skipped(reason.clone())),
         }
+        run.tell_watch(index)?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 
 use super::node::{EntryFailure, run_entries};
 use super::value::HeldValue;
+use super::watch::RunWatch;
 use super::{RunError, typed};
 use crate::cache::{Cache, CacheAnswer, Fed, Ingredients, Parts, RUN_SO_FAR};
 use crate::cost::{Expect, Meter, Predicted, Size, StageCost, Used};
@@ -58,6 +59,7 @@ pub(super) struct PipelineRun<'a> {
     pub(super) reads: Option<&'a Reads>,
     pub(super) meter: Option<&'a dyn Meter>,
     pub(super) expect: Option<&'a dyn Expect>,
+    pub(super) watch: Option<Arc<dyn RunWatch>>,
     pub(super) steps: Vec<StageOutcome>,
     /// Improving stages that pass on what they are given; the one that failed with what to report
     /// to the user.

@@ -5,3 +5,4 @@ mod bench;
 mod causes;
 mod damage;
 mod rerun;
+mod watch;
