@@ -1,0 +1,111 @@
+//! What runs have made so far, for a page to show.
+
+use std::any::Any;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use toile_core::artifact::{
+    Artifact, Body, Figures, Garment, Kind, Mask, Model, Outline, Pattern, Photo, SewingPlan,
+};
+use toile_core::{ArtifactType, PortValue};
+
+/// The kinds that are shown.
+pub(crate) const KINDS: [Kind; 9] = [
+    Photo::KIND,
+    Mask::KIND,
+    Outline::KIND,
+    SewingPlan::KIND,
+    Pattern::KIND,
+    Garment::KIND,
+    Model::KIND,
+    Body::KIND,
+    Figures::KIND,
+];
+
+type NamedSet<T> = BTreeMap<String, Arc<T>>;
+
+/// The latest of each kind.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ShownArtifacts {
+    /// As the photos were read.
+    pub(crate) photos: NamedSet<Photo>,
+    pub(crate) masks: NamedSet<Mask>,
+    pub(crate) outlines: NamedSet<Outline>,
+    pub(crate) plan: Option<Arc<SewingPlan>>,
+    pub(crate) pattern: Option<Arc<Pattern>>,
+    pub(crate) garment: Option<Arc<Garment>>,
+    /// The garment's textures; none before it has any.
+    pub(crate) model: Option<Arc<Model>>,
+    pub(crate) body: Option<Arc<Body>>,
+    pub(crate) figures: Option<Arc<Figures>>,
+}
+
+impl ShownArtifacts {
+    /// Takes what a stage made; whether that is shown.
+    pub(crate) fn take(&mut self, outputs: &[PortValue]) -> bool {
+        outputs.iter().filter(|value| self.take_port(value)).count() > 0
+    }
+
+    fn take_port(&mut self, value: &PortValue) -> bool {
+        let kind = value.kind();
+        // Photos that stages change are not those that a user took.
+        if kind == Photo::KIND && self.photos.is_empty() {
+            self.photos = set(value);
+        } else if kind == Mask::KIND {
+            self.masks = set(value);
+        } else if kind == Outline::KIND {
+            self.outlines = set(value);
+        } else if kind == SewingPlan::KIND {
+            self.plan = one(value);
+        } else if kind == Pattern::KIND {
+            self.pattern = one(value);
+        } else if kind == Garment::KIND {
+            self.garment = one(value);
+            self.model = None;
+        } else if kind == Model::KIND {
+            self.model = one(value);
+        } else if kind == Body::KIND {
+            self.body = one(value);
+        } else if kind == Figures::KIND {
+            self.figures = one(value);
+        } else {
+            return false;
+        }
+        true
+    }
+
+    /// This, and what it lacks of an earlier one.
+    pub(crate) fn over(&self, before: &ShownArtifacts) -> ShownArtifacts {
+        fn either<T>(new: &NamedSet<T>, old: &NamedSet<T>) -> NamedSet<T> {
+            if new.is_empty() { old.clone() } else { new.clone() }
+        }
+        let (garment, model) = match &self.garment {
+            None => (before.garment.clone(), before.model.clone()),
+            new => (new.clone(), self.model.clone()),
+        };
+        ShownArtifacts {
+            photos: either(&self.photos, &before.photos),
+            masks: either(&self.masks, &before.masks),
+            outlines: either(&self.outlines, &before.outlines),
+            plan: self.plan.clone().or_else(|| before.plan.clone()),
+            pattern: self.pattern.clone().or_else(|| before.pattern.clone()),
+            garment,
+            model,
+            body: self.body.clone().or_else(|| before.body.clone()),
+            figures: self.figures.clone().or_else(|| before.figures.clone()),
+        }
+    }
+}
+
+fn cast<T: ArtifactType>(artifact: &Arc<dyn Artifact>) -> Option<Arc<T>> {
+    let any: Arc<dyn Any + Send + Sync> = artifact.clone();
+    any.downcast().ok()
+}
+
+fn one<T: ArtifactType>(value: &PortValue) -> Option<Arc<T>> {
+    value.entries().first().and_then(|(_, artifact)| cast(artifact))
+}
+
+fn set<T: ArtifactType>(value: &PortValue) -> NamedSet<T> {
+    let named = |(name, artifact): (&str, &Arc<dyn Artifact>)| Some((name.to_owned(), cast(artifact)?));
+    value.entries().into_iter().filter_map(named).collect()
+}

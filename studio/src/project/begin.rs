@@ -1,0 +1,158 @@
+//! What a project begins with: the shipped templates, and the samples with their photos.
+//!
+//! The samples are part of the program, 1.4 MB, so that a page has something to show wherever the
+//! program lies.
+
+use super::uploads::check_name;
+use crate::fault::StudioFault;
+use serde::Deserialize;
+use toile_core::param::ron_text;
+use toile_core::{Length, Registry};
+use toile_pipeline::{PipelineEdit, edited};
+
+/// What a project is to begin with.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct BeginWith {
+    /// A photo of a garment that lies flat, in the project's folder.
+    #[serde(default)]
+    pub(crate) photo: Option<String>,
+    /// The garment's real width in it.
+    #[serde(default)]
+    pub(crate) width: Option<String>,
+    /// A pattern file in the project's folder.
+    #[serde(default)]
+    pub(crate) pattern: Option<String>,
+    /// A sample.
+    #[serde(default)]
+    pub(crate) sample: Option<String>,
+}
+
+/// A pipeline with its inputs.
+#[derive(Debug)]
+pub(super) struct Beginning {
+    pub(super) text: String,
+    /// Names and contents of files beside it.
+    pub(super) inputs: Vec<(&'static str, &'static [u8])>,
+}
+
+/// A shipped pipeline, the folder of its inputs as it stands in it, and the inputs.
+struct ShippedSample {
+    name: &'static str,
+    text: &'static str,
+    folder: &'static str,
+    inputs: &'static [(&'static str, &'static [u8])],
+}
+
+macro_rules! shipped {
+    ($path:literal) => {
+        include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../pipelines/", $path))
+    };
+}
+
+macro_rules! pipeline {
+    ($path:literal) => {
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../pipelines/", $path))
+    };
+}
+
+const PHOTO: &str = pipeline!("photo.ron");
+const PATTERN: &str = pipeline!("pattern.ron");
+
+const SAMPLES: [ShippedSample; 5] = [
+    ShippedSample {
+        name: "vest",
+        text: pipeline!("vest.ron"),
+        folder: "samples/vest/",
+        inputs: &[
+            ("front.jpg", shipped!("samples/vest/front.jpg")),
+            ("back.jpg", shipped!("samples/vest/back.jpg")),
+        ],
+    },
+    ShippedSample {
+        name: "tshirt",
+        text: pipeline!("tshirt.ron"),
+        folder: "samples/tshirt/",
+        inputs: &[
+            ("front.jpg", shipped!("samples/tshirt/front.jpg")),
+            ("back.jpg", shipped!("samples/tshirt/back.jpg")),
+        ],
+    },
+    ShippedSample {
+        name: "skirt",
+        text: pipeline!("photo_skirt.ron"),
+        folder: "samples/skirt/",
+        inputs: &[("front.jpg", shipped!("samples/skirt/front.jpg"))],
+    },
+    ShippedSample {
+        name: "trousers",
+        text: pipeline!("photo_trousers.ron"),
+        folder: "samples/trousers/",
+        inputs: &[("front.jpg", shipped!("samples/trousers/front.jpg"))],
+    },
+    ShippedSample {
+        name: "shirt_pattern",
+        text: PATTERN,
+        folder: "samples/pattern/",
+        inputs: &[("shirt_specification.json", shipped!("samples/pattern/shirt_specification.json"))],
+    },
+];
+
+/// The pipeline that is asked for.
+///
+/// Errors: nothing is named, or what there is not.
+pub(super) fn beginning(with: &BeginWith, registry: &Registry) -> Result<Beginning, StudioFault> {
+    match (&with.photo, &with.pattern, &with.sample) {
+        (Some(photo), None, None) => of_photo(photo, with.width.as_deref(), registry),
+        (None, Some(pattern), None) if with.width.is_none() => of_pattern(pattern, registry),
+        (None, None, Some(name)) if with.width.is_none() => sample(name),
+        _ => Err(StudioFault::malformed("a project begins with a photo, a pattern or a sample")
+            .hint("{\"photo\": \"tee.jpg\", \"width\": \"76 cm\"}")),
+    }
+}
+
+fn sample(name: &str) -> Result<Beginning, StudioFault> {
+    let Some(sample) = SAMPLES.iter().find(|s| s.name == name) else {
+        let names: Vec<&str> = SAMPLES.iter().map(|s| s.name).collect();
+        return Err(StudioFault::new("not_found", format!("there is no sample \"{name}\""))
+            .hint(format!("there is {}", toile_core::quoted(&names))));
+    };
+    Ok(Beginning { text: sample.text.replace(sample.folder, ""), inputs: sample.inputs.to_vec() })
+}
+
+/// A photo without a width takes the one that the template gives a T-shirt: a start that is seen,
+/// and changed.
+fn of_photo(photo: &str, width: Option<&str>, registry: &Registry) -> Result<Beginning, StudioFault> {
+    check_name(photo)?;
+    let mut edits = vec![set("photos.front.file", ron_text(&photo))];
+    if let Some(width) = width {
+        let length: Length = width.parse().map_err(StudioFault::malformed)?;
+        edits.push(set("photos.front.width", ron_text(&length)));
+    }
+    made(PHOTO, registry, &edits)
+}
+
+fn of_pattern(pattern: &str, registry: &Registry) -> Result<Beginning, StudioFault> {
+    check_name(pattern)?;
+    let ending = pattern.rsplit('.').next().unwrap_or("").to_lowercase();
+    let file = ron_text(&pattern);
+    let reader = match ending.as_str() {
+        "json" => format!("GarmentCode(file: {file})"),
+        "dxf" => format!("DxfPattern(file: {file})"),
+        "svg" => format!("SvgPattern(file: {file})"),
+        "sm2d" | "val" => format!("SeamlyPattern(file: {file})"),
+        _ => {
+            let message = format!("\"{pattern}\" is no pattern file that is known by its ending");
+            return Err(StudioFault::malformed(message).hint("json, dxf, svg, sm2d or val"));
+        }
+    };
+    made(PATTERN, registry, &[set("pattern", reader)])
+}
+
+fn set(path: &str, value: String) -> PipelineEdit {
+    PipelineEdit::Set { path: path.to_owned(), value }
+}
+
+fn made(template: &str, registry: &Registry, edits: &[PipelineEdit]) -> Result<Beginning, StudioFault> {
+    Ok(Beginning { text: edited(template, registry, edits)?, inputs: Vec::new() })
+}

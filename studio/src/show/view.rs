@@ -1,0 +1,103 @@
+//! What the runs have made, for all panes.
+
+use super::of_panel;
+use super::pattern::{pieces_of_outlines, pieces_of_pattern, seams_of_pattern, seams_of_plan};
+use crate::live::shown::ShownArtifacts;
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use toile_core::artifact::{Figures, Outline, Photo, Point2};
+
+/// The photo whose landmarks are named without it.
+const FRONT: &str = "front";
+
+/// The view with its number; `given` are the names of landmarks that the text gives.
+pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>) -> Value {
+    let pieces = match &shown.pattern {
+        Some(pattern) => Some((pieces_of_pattern(pattern, &shown.photos), seams_of_pattern(pattern, shown))),
+        None if shown.outlines.values().any(|o| !o.edges.is_empty()) => {
+            Some((pieces_of_outlines(shown), seams_of_plan(shown)))
+        }
+        None => None,
+    };
+    let figures = shown.figures.as_deref();
+    let girth = |(level, g): (&String, &toile_core::artifact::GirthFigures)| json!({ "level": level, "cloth_m": g.cloth_m, "body_m": g.body_m });
+    let missed = figures.iter().flat_map(|f| &f.shortfalls);
+    json!({
+        "view": number,
+        "photos": shown.photos.iter().map(|(name, photo)| photo_json(name, photo, shown, given)).collect::<Vec<_>>(),
+        "outlines": shown.outlines.iter().filter_map(|(name, o)| outline(name, o)).collect::<Vec<_>>(),
+        "pattern": pieces.map(|(pieces, seams)| json!({ "pieces": pieces, "seams": seams })),
+        "garment": shown.garment.is_some(),
+        "body": shown.body.is_some(),
+        "figures": figures.map(figures_json),
+        "girths": figures.iter().flat_map(|f| &f.garment.girths).map(girth).collect::<Vec<_>>(),
+        "qualities_missed": missed
+            .map(|s| json!({ "code": s.code.as_str(), "message": s.message }))
+            .collect::<Vec<_>>(),
+    })
+}
+
+fn photo_json(name: &str, photo: &Photo, shown: &ShownArtifacts, given: &BTreeSet<String>) -> Value {
+    let (width, height) = photo.pixels.dimensions();
+    let scale = photo.px_per_metre.map(|s| s * f64::from(photo.joined));
+    let known = || shown.outlines.get(name).and_then(|o| Some(o.frame?.px_per_metre));
+    json!({
+        "name": name,
+        "width": width * photo.joined,
+        "height": height * photo.joined,
+        "px_per_metre": scale.or_else(known),
+        "landmarks": landmarks(name, shown, given),
+    })
+}
+
+/// The corners at which named edges meet, `neck/shoulder_left`, in the pixels of a photo. One is
+/// given where the text names it, for another photo than the front behind the photo's name.
+fn landmarks(photo: &str, shown: &ShownArtifacts, given: &BTreeSet<String>) -> Vec<Value> {
+    let mut all = Vec::new();
+    for (panel, outline) in &shown.outlines {
+        if of_panel(&shown.photos, panel).map(|(name, _)| name) != Some(photo) {
+            continue;
+        }
+        for (k, edge) in outline.edges.iter().enumerate() {
+            let before = &outline.edges[(k + outline.edges.len() - 1) % outline.edges.len()];
+            if let Some(px) = pixel(outline, edge.start) {
+                let name = format!("{}/{}", before.name, edge.name);
+                let name = if panel == photo { name } else { format!("{panel}: {name}") };
+                let said = if photo == FRONT { name.clone() } else { format!("{photo}.{name}") };
+                all.push(json!({ "name": name, "x": px.x, "y": px.y, "given": given.contains(&said) }));
+            }
+        }
+    }
+    all
+}
+
+/// Where a point of an outline lies in its photo.
+fn pixel(outline: &Outline, k: usize) -> Option<Point2> {
+    let place = outline.lies.get(k).or_else(|| outline.outer.points.get(k))?;
+    Some(outline.frame?.to_px(*place))
+}
+
+fn outline(name: &str, outline: &Outline) -> Option<Value> {
+    let points: Option<Vec<[f64; 2]>> = (0..outline.outer.points.len())
+        .map(|k| pixel(outline, k).map(|p| [tenth(p.x), tenth(p.y)]))
+        .collect();
+    Some(json!({ "panel": name, "points": points? }))
+}
+
+/// To a tenth of a pixel, which no screen shows.
+fn tenth(x: f64) -> f64 {
+    (10.0 * x).round() / 10.0
+}
+
+fn figures_json(figures: &Figures) -> Value {
+    let mut all = serde_json::to_value(&figures.garment).unwrap_or_default();
+    if let Value::Object(map) = &mut all {
+        let strain = figures.garment.edge_strain;
+        map.remove("girths");
+        map.remove("edge_strain");
+        for (name, value) in [("p50", strain.p50), ("p99", strain.p99), ("max", strain.max)] {
+            map.insert(format!("strain_{name}"), json!(value));
+        }
+    }
+    all
+}
