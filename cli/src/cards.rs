@@ -14,14 +14,7 @@ const IMPROVES: &str = "Only improves on what it is given: where it fails, or ta
 /// Lists all stages, role by role.
 pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     if json {
-        let contracts = known(None);
-        let cards: Vec<Value> = registry.cards().map(|card| card_json(card, &contracts)).collect();
-        let mut listing = json!({ "stages": cards });
-        if !registry.plugins().is_empty() || !registry.refused().is_empty() {
-            listing["plugins"] = registry.plugins().iter().map(plugin_json).collect();
-            listing["refused"] = registry.refused().iter().map(refused_json).collect();
-        }
-        streams.say(listing);
+        streams.say(listing(registry));
         return exit::DONE;
     }
     for role in Role::ALL {
@@ -36,6 +29,18 @@ pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -
     }
     list_plugins(registry, streams);
     exit::DONE
+}
+
+/// The cards of all stages, and the plugins.
+pub(crate) fn listing(registry: &Registry) -> Value {
+    let contracts = known(None);
+    let cards: Vec<Value> = registry.cards().map(|card| card_json(card, &contracts)).collect();
+    let mut listing = json!({ "stages": cards });
+    if !registry.plugins().is_empty() || !registry.refused().is_empty() {
+        listing["plugins"] = registry.plugins().iter().map(plugin_json).collect();
+        listing["refused"] = registry.refused().iter().map(refused_json).collect();
+    }
+    listing
 }
 
 /// Prints the JSON schema of pipeline files.

@@ -14,10 +14,10 @@ mod doctor;
 mod explain;
 mod failing;
 mod golden;
+mod live;
 mod lock;
 mod migrate;
 mod new_stage;
-mod reads;
 mod run;
 mod schema;
 mod shell;
@@ -25,7 +25,6 @@ mod terminal;
 mod trading;
 mod validate;
 mod verify;
-mod watch;
 mod why;
 
 use args::{Arguments, BenchCommand, Command, Verb};
@@ -167,7 +166,7 @@ fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, i
         terminal::interrupt::on_ctrl_c();
     }
     match command {
-        Command::Run(args) if args.watch => watch::watch(&args, &plugins, registry, streams),
+        Command::Run(args) if args.watch => live::watch::watch(&args, &plugins, registry, streams),
         command => {
             // A refused plugin ends the command, but for the list of stages and the doctor, which
             // show it.
@@ -213,6 +212,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
     }
     match command {
         Command::Run(args) => run::once(&args, registry, None, streams),
+        #[cfg(feature = "studio")]
+        Command::Studio(args) => live::studio::studio(&args, registry, streams),
         Command::Batch(args) => batch::batch(&args, registry, streams),
         Command::Manifest(args) => batch::make::make(&args, streams),
         Command::Validate(args) => validate::validate(&args, registry, streams),

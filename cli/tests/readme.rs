@@ -8,6 +8,8 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -177,6 +179,28 @@ pub(crate) fn passes(command: &str, folder: &Path, cache: &Path) {
     eprintln!("{:5.1} s  {command}", start.elapsed().as_secs_f64());
 }
 
+/// `toile studio`: it prints its address, answers there, and ends on Ctrl-C.
+fn serves(command: &str, folder: &Path, cache: &Path) {
+    let mut shell = shell(&format!("exec {command} --no-open"), folder, cache);
+    let mut child = shell.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let address = line.strip_prefix("studio: http://").and_then(|l| l.strip_suffix("  (Ctrl-C ends it)\n"));
+    let (host, token) =
+        address.unwrap_or_else(|| panic!("{command}: {line}")).split_once("/?token=").unwrap();
+    let mut stream = TcpStream::connect(host).unwrap();
+    let ask = format!(
+        "GET / HTTP/1.1\r\nHost: {host}\r\nAuthorization: Bearer {token}\r\nConnection: close\r\n\r\n"
+    );
+    stream.write_all(ask.as_bytes()).unwrap();
+    let mut page = String::new();
+    stream.read_to_string(&mut page).unwrap();
+    assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("<html"), "{command}: {page}");
+    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(interrupt.success());
+    assert_eq!(child.wait().unwrap().code(), Some(0), "{command}");
+}
+
 /// A command that goes on until Ctrl-C: it writes what it is for, goes on, and is ended.
 fn goes_on(command: &str, folder: &Path, cache: &Path, writes: &Path) {
     let mut child = shell(&format!("exec {command}"), folder, cache).stderr(Stdio::null()).spawn().unwrap();
@@ -201,6 +225,7 @@ fn the_commands_run() {
     for told in commands {
         let command = &told.command;
         match command.contains("--watch") {
+            _ if command.starts_with("toile studio") => serves(command, dir.path(), &cache),
             true => {
                 let report = dir.path().join("out/vest/report.html");
                 let _ = std::fs::remove_file(&report);

@@ -7,6 +7,8 @@ pub(crate) mod color;
 mod file;
 mod run;
 mod shared;
+#[cfg(feature = "studio")]
+mod studio;
 mod trade;
 mod verify;
 
@@ -17,6 +19,8 @@ pub(crate) use file::{
 };
 pub(crate) use run::{CacheArgs, ExplainArgs, RunArgs, WhyArgs};
 pub(crate) use shared::{CacheChoice, Overrides};
+#[cfg(feature = "studio")]
+pub(crate) use studio::StudioArgs;
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
 pub(crate) use verify::VerifyArgs;
 
@@ -47,6 +51,9 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Run a pipeline and write its files
     Run(RunArgs),
+    /// Open a pipeline on a page in the browser, where it is edited while it runs
+    #[cfg(feature = "studio")]
+    Studio(StudioArgs),
     /// Run a pipeline for every garment of a manifest, and go on where it was stopped
     Batch(BatchArgs),
     /// Write a manifest for `batch` from files or from a CSV table

@@ -7,7 +7,7 @@ use super::mirror::Mirror;
 use super::record::{FileDigests, GarmentRecord};
 use super::tally::counted;
 use crate::args::{BatchArgs, Shard};
-use crate::reads::look;
+use crate::live::reads::look;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

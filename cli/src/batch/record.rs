@@ -1,7 +1,7 @@
 //! What is kept of a garment that was run: its line of the results, what it took, and what went
 //! into it, by which a later batch knows that it is done.
 
-use crate::reads::look;
+use crate::live::reads::look;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;

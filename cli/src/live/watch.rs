@@ -7,7 +7,7 @@
 //! counts once two looks in a row see the same, so that a file half written is not run.
 
 use crate::args::RunArgs;
-use crate::reads::{FileLook, look, note};
+use crate::live::reads::{FileLook, look, note};
 use crate::run::once;
 use crate::{Streams, exit, refused, terminal::interrupt, terminal::stdin, with_plugins};
 use std::collections::BTreeMap;

@@ -47,7 +47,8 @@ pub enum PipelineEdit {
     Add {
         /// As it is written: `PatternPdf()`.
         stage: String,
-        /// The id of the stage that it follows; none for the last.
+        /// The id of the stage that it follows, that of a section for the first place of the list;
+        /// none for the last.
         after: Option<String>,
     },
 }

@@ -1,7 +1,8 @@
 //! Whole stages swapped and added.
 
-use super::fault;
+use super::{fault, own_line};
 use crate::load::fault::Fault;
+use crate::load::overrides::NEXT;
 use crate::load::qualities::named;
 use crate::load::read::{self, FileContents, GENERIC};
 use crate::load::syntax::cut::comma_after;
@@ -67,6 +68,9 @@ pub(super) fn added(
         None => entries.last(),
         Some(id) => {
             let read = read::file(text, tree, (registry, false), &mut Vec::new());
+            if read.sections.iter().any(|d| d.id == id) {
+                return Ok(insert_first(text, *inside, entries, &new));
+            }
             let found = read.stages.iter().find(|d| d.id == id);
             let found = found.and_then(|d| entries.iter().find(|e| e.value.span == d.span));
             let ids: Vec<&str> = read.stages.iter().map(|d| d.id.as_str()).collect();
@@ -79,6 +83,16 @@ pub(super) fn added(
         Some(entry) => insert_after(&mut out, entry, &new),
     }
     Ok(out)
+}
+
+/// Puts a stage before all others of the list.
+fn insert_first(text: &str, inside: usize, entries: &[GroupEntry], new: &str) -> String {
+    let mut out = text.to_owned();
+    match own_line(text, inside) {
+        Some((at, indent)) if !entries.is_empty() => out.insert_str(at, &format!("{indent}{new},\n")),
+        _ => out.insert_str(inside, &format!("{new}{}", if entries.is_empty() { "" } else { NEXT })),
+    }
+    out
 }
 
 /// Puts a stage behind another: on the next line where that one has a line of its own, else beside

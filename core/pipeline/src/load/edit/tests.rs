@@ -174,6 +174,12 @@ fn a_stage_is_added_beside_or_below() {
         &["Glb(), Report()                 // files"],
         &["Glb(), Report(), Glb(id: \"more\")                 // files"],
     );
+    changes(add("Mean(id: \"more\")", Some("Vest")), &[], &["Mean(id: \"more\"),"]);
+    let text = edited(TEXT, &kit::registry(), &[add("Mean(id: \"more\")", Some("Photos"))]).unwrap();
+    assert!(text.contains("stages: [\n        Mean(id: \"more\"),\n        Mean(mask"), "{text}");
+    let short = "(photos: {}, stages: [Otsu()])";
+    let text = edited(short, &kit::registry(), &[add("Mean", Some("Photos"))]).unwrap();
+    assert_eq!(text, "(photos: {}, stages: [Mean(), Otsu()])");
     let text = TEXT.replace("Glb(), Report()  ", "Glb()");
     let text = edited(&text, &kit::registry(), &[add("Report", None)]).unwrap();
     assert!(text.contains("        Glb(),               // files\n        Report(),\n    ],"), "{text}");
