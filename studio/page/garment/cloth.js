@@ -1,0 +1,148 @@
+// The garment as a mesh: its places, its looks (texture, colours of the panels, map of strain or pressure), and the
+// move from the garment before to the one that came.
+
+import {
+    BufferAttribute,
+    BufferGeometry,
+    DoubleSide,
+    Mesh,
+    MeshLambertMaterial,
+    SRGBColorSpace,
+    TextureLoader,
+} from "../vendor/three.module.min.js";
+import { mapColour, scaleOf } from "./strain.js";
+
+/** How long a garment takes to move to its new place, in milliseconds. */
+const MOVE = 350;
+
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+const loader = new TextureLoader();
+
+function colours(mesh, looks) {
+    const found = new Float32Array(3 * mesh.vertices).fill(0.7);
+    if (looks === "strain" || looks === "pressure") {
+        const values = perVertex(mesh, mesh[looks]);
+        const scale = scaleOf(values);
+        values.forEach((value, i) =>
+            found.set(
+                mapColour(value / scale).map((c) => c ** 2.2),
+                3 * i,
+            ),
+        );
+        return { found, scale };
+    }
+    for (const { first_vertex: first, vertices, colour } of mesh.panels) {
+        const linear = colour.map((c) => (c > 1 ? c / 255 : c) ** 2.2);
+        for (let i = first; i < first + vertices; i++) found.set(linear, 3 * i);
+    }
+    return { found, scale: null };
+}
+
+/** Figures of triangles as means at their corners; those of vertices as they are. */
+function perVertex(mesh, values) {
+    if (values.length === mesh.vertices) return values;
+    const sum = new Float32Array(mesh.vertices);
+    const count = new Float32Array(mesh.vertices);
+    mesh.triangles.forEach((vertex, i) => {
+        sum[vertex] += values[Math.floor(i / 3)];
+        count[vertex] += 1;
+    });
+    return sum.map((value, i) => value / Math.max(1, count[i]));
+}
+
+export function makeCloth(world, draw) {
+    const geometry = new BufferGeometry();
+    const object = new Mesh(geometry, []);
+    object.visible = false;
+    world.add(object);
+    let mesh = null;
+    let looks = "texture";
+    let version = 0;
+    let moving = 0;
+
+    function textured() {
+        const pictures = new Map();
+        return mesh.panels.map((panel) => {
+            const n = panel.texture ?? 0;
+            if (!pictures.has(n)) {
+                const texture = loader.load(`/api/texture/${n}?v=${version}`, draw, undefined, () =>
+                    show("panels"),
+                );
+                texture.colorSpace = SRGBColorSpace;
+                texture.flipY = false;
+                texture.anisotropy = 4;
+                pictures.set(n, new MeshLambertMaterial({ map: texture, side: DoubleSide }));
+            }
+            return pictures.get(n);
+        });
+    }
+
+    /** Shows the garment by its texture, its panels' colours, or a map; gives the map's scale. */
+    function show(next) {
+        looks = next;
+        if (!mesh) return null;
+        for (const material of object.material) {
+            material.map?.dispose();
+            material.dispose();
+        }
+        let scale = null;
+        if (looks === "texture" && mesh.uv) object.material = textured();
+        else {
+            const made = colours(mesh, mesh[looks] || looks === "panels" ? looks : "panels");
+            scale = made.scale;
+            geometry.setAttribute("color", new BufferAttribute(made.found, 3));
+            const material = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide });
+            object.material = mesh.panels.map(() => material);
+        }
+        draw();
+        return scale;
+    }
+
+    /** Moves to the new places where the mesh has as many vertices as before, else takes them at once. */
+    function place(before) {
+        const to = mesh.positions;
+        cancelAnimationFrame(moving);
+        if (!before || before.length !== to.length || still.matches) {
+            geometry.setAttribute("position", new BufferAttribute(to.slice(), 3));
+            geometry.computeVertexNormals();
+            geometry.computeBoundingSphere();
+            return draw();
+        }
+        const array = before.slice();
+        geometry.setAttribute("position", new BufferAttribute(array, 3));
+        const began = performance.now();
+        const next = (now) => {
+            const share = Math.min(1, (now - began) / MOVE);
+            const eased = share * (2 - share);
+            for (let i = 0; i < array.length; i++) array[i] = before[i] + eased * (to[i] - before[i]);
+            geometry.attributes.position.needsUpdate = true;
+            geometry.computeVertexNormals();
+            draw();
+            if (share < 1) moving = requestAnimationFrame(next);
+            else geometry.computeBoundingSphere();
+        };
+        moving = requestAnimationFrame(next);
+        return undefined;
+    }
+
+    return {
+        object,
+        show,
+        /** Takes a garment; nothing takes it away. Gives the map's scale. */
+        take(next, v) {
+            const before = mesh?.positions;
+            mesh = next;
+            version = v;
+            object.visible = Boolean(mesh);
+            if (!mesh) return draw();
+            geometry.setIndex(new BufferAttribute(mesh.triangles, 1));
+            if (mesh.uv) geometry.setAttribute("uv", new BufferAttribute(mesh.uv, 2));
+            geometry.clearGroups();
+            mesh.panels.forEach((panel, i) =>
+                geometry.addGroup(3 * panel.first_triangle, 3 * panel.triangles, i),
+            );
+            place(before);
+            return show(looks);
+        },
+    };
+}

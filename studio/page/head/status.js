@@ -1,0 +1,80 @@
+// The line that says what the last change did and cost, and the banner while the connection is lost.
+
+import { h, replace } from "../dom/element.js";
+import { mm, t } from "../words/words.js";
+import { store, watch, whenChanged } from "../server/store.js";
+
+let line = null;
+let aside = null;
+
+function say(text, kind = "note") {
+    if (!line) return;
+    line.dataset.kind = kind;
+    line.textContent = text;
+}
+
+/** Says a sentence of the page. */
+export const sayWord = (key, values, kind) => say(t(key, values), kind);
+
+/** Says why something was refused, in the program's words. */
+export function sayError(error) {
+    // A request that did not arrive is told by the banner.
+    if (error instanceof TypeError && /fetch|network/i.test(error.message)) return;
+    say(error.words ?? error.message, "error");
+}
+
+const seconds = (value) => t("seconds", { s: value < 10 ? value.toFixed(1) : value.toFixed(0) });
+
+/** What a run came to, in one sentence. */
+function told(run, words) {
+    if (run.state === "failed") {
+        const { stage, message, hint } = run.error ?? { message: t("run.failed") };
+        return say(`${stage ? `${stage}: ` : ""}${message}${hint ? ` (${hint})` : ""}`, "error");
+    }
+    if (run.state === "stopped") return sayWord("run.stopped", {}, "note");
+    if (run.state !== "done") return undefined;
+    const took = seconds(run.changed?.seconds ?? run.seconds ?? 0);
+    const moved = run.changed?.mm;
+    const what = words ? t("run.after", { words }) : "";
+    const did =
+        moved === null || moved === undefined
+            ? t("run.done", { took })
+            : t("run.moved", { mm: mm(moved / 1000, moved < 10 ? 1 : 0), took });
+    return say(what + did + (run.kind === "draft" ? t("run.asDraft") : ""), "done");
+}
+
+const tellRun = whenChanged((number, state, kind, mmMoved, words) => {
+    const { run } = store.state;
+    if (run.number === number) told({ ...run, state, kind }, words);
+    void mmMoved;
+});
+
+/** `foot` holds the line, `lost` is the banner. */
+export function mountStatus(foot, lost) {
+    line = h("p", { id: "status", role: "status", "aria-live": "polite" });
+    aside = h("p", { id: "figures" });
+    replace(foot, line, aside);
+
+    watch(["state"], () => {
+        const state = store.state;
+        if (!state?.project.file) return;
+        const { run, project } = state;
+        tellRun(run.number, run.state, run.kind, run.changed?.mm, project.can_undo);
+    });
+    watch(["view"], () => {
+        const figures = store.view?.figures;
+        const parts = [];
+        if (figures?.triangles) parts.push(t("figures.triangles", { n: figures.triangles.toLocaleString() }));
+        if (figures?.seam_gap_max_m !== undefined)
+            parts.push(t("figures.gap", { mm: mm(figures.seam_gap_max_m, 1) }));
+        if (figures?.strain_p99 !== undefined) {
+            parts.push(t("figures.strain", { share: (100 * figures.strain_p99).toFixed(1) }));
+        }
+        aside.textContent = parts.join(" · ");
+    });
+    watch(["connection"], () => {
+        lost.hidden = store.connected;
+        lost.textContent = store.connected ? "" : t(store.refused ? "connection.refused" : "connection.lost");
+        document.body.classList.toggle("is-lost", !store.connected);
+    });
+}

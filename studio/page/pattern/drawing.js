@@ -1,0 +1,120 @@
+// The drawing of the pattern: pieces with their edges, corners, lines, notches and grain. Edges that are sewn together
+// have the same colour and number.
+
+import { svg } from "../dom/element.js";
+import { cm, t } from "../words/words.js";
+import { edgePoints } from "../garment/edge_line.js";
+
+/** Colours of seams, one after the other; the style sheet has as many. */
+const COLOURS = 10;
+
+/** Seams by edge: {name, number, others}. */
+export function seamsByEdge(seams) {
+    const found = new Map();
+    seams.forEach((seam, i) => {
+        const all = seam.sides.flat().map(({ piece, edge }) => `${piece}.${edge}`);
+        for (const edge of all) {
+            const others = all.filter((other) => other !== edge);
+            found.set(edge, { name: seam.name, number: i + 1, others });
+        }
+    });
+    return found;
+}
+
+const path = (points, close = false) =>
+    `M${points.map(([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`).join("L")}${close ? "Z" : ""}`;
+
+const middle = (line) => {
+    const i = Math.floor((line.length - 1) / 2);
+    const [a, b] = [line[i], line[i + 1] ?? line[i]];
+    return [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+};
+
+/** An edge: a thin line that is seen and a wide one that is easily met. */
+function edgeElement(piece, edge, at, seam, reach) {
+    const name = `${piece.name}.${edge.name}`;
+    const line = edgePoints(piece, edge).map(at.to);
+    const sewn = seam ? t("edge.sewn", { to: seam.others.join(", ") }) : t("edge.open");
+    const label = `${name}, ${cm(edge.length)}, ${sewn}`;
+    const colour = seam ? `seam-${(seam.number - 1) % COLOURS}` : "free";
+    const [x, y] = middle(line);
+    return svg(
+        "g",
+        { class: `edge ${colour}`, "data-edge": name, "data-seam": seam?.name },
+        svg("path", { class: "line", d: path(line) }),
+        svg(
+            "path",
+            {
+                class: "reach",
+                d: path(line),
+                role: "button",
+                "aria-label": label,
+                "data-edge": name,
+                "data-key": `edge-${name}`,
+                tabindex: reach ? 0 : -1,
+            },
+            svg("title", {}, label),
+        ),
+        seam && svg("text", { class: "number", x, y, "aria-hidden": "true" }, String(seam.number)),
+    );
+}
+
+/** A corner: k is where edge k starts. */
+function cornerElement(piece, k, at, reach) {
+    const edge = piece.edges[k];
+    const point = piece.points[edge ? edge.start : piece.corners[k]];
+    const [cx, cy] = at.to(point);
+    const label = t("corner.label", { k: k + 1, piece: piece.name, x: cm(point[0]), y: cm(point[1]) });
+    return svg(
+        "circle",
+        {
+            class: "corner",
+            cx,
+            cy,
+            r: 3,
+            role: "button",
+            "aria-label": label,
+            "data-corner": k,
+            "data-piece": piece.name,
+            "data-key": `corner-${piece.name}-${k}`,
+            tabindex: reach ? 0 : -1,
+        },
+        svg("title", {}, label),
+    );
+}
+
+/** A piece with all that is drawn on it. `reach` says whether the Tab key goes into it. */
+export function pieceElement(piece, at, seams, reach) {
+    const outline = path(piece.points.map(at.to), true);
+    const label = t("piece.label", { piece: piece.name, edges: piece.edges.length });
+    return svg(
+        "g",
+        { class: "piece", role: "group", "aria-label": piece.name, "data-piece": piece.name },
+        svg("path", {
+            class: "cloth",
+            d: outline,
+            role: "button",
+            tabindex: 0,
+            "aria-label": label,
+            "data-key": `piece-${piece.name}`,
+            "data-piece": piece.name,
+        }),
+        (piece.lines ?? []).map((line) =>
+            svg(
+                "path",
+                { class: `mark ${line.purpose}`, d: path(line.points.map(at.to)) },
+                svg("title", {}, line.name),
+            ),
+        ),
+        piece.grain && svg("path", { class: "grain", d: path(piece.grain.map(at.to)) }),
+        svg("text", { class: "name", x: at.middle[0], y: at.middle[1], "aria-hidden": "true" }, piece.name),
+        piece.edges.map((edge) =>
+            edgeElement(piece, edge, at, seams.get(`${piece.name}.${edge.name}`), reach),
+        ),
+        (piece.notches ?? []).map((notch) => {
+            const [x, y] = at.to(notch);
+            return svg("circle", { class: "notch", cx: x, cy: y, r: 2 });
+        }),
+        piece.edges.map((_, k) => cornerElement(piece, k, at, reach)),
+    );
+}

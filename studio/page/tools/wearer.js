@@ -1,0 +1,159 @@
+// Who wears it and what it is made of: measures of the body as sliders in centimetres, sizes, fabrics.
+
+import { h, replace } from "../dom/element.js";
+import { t } from "../words/words.js";
+import { edit } from "../server/edits.js";
+import { stagesOf, store, watch, whenChanged } from "../server/store.js";
+import { quote } from "../ron/ron.js";
+import { inCm } from "../ron/lengths.js";
+import { namesIn } from "./card_types.js";
+import { parameter, slider } from "./fields.js";
+
+/** The stage of the body that has the measures. */
+const body = () =>
+    stagesOf("body").find((stage) => stage.name === store.measures?.stage) ?? stagesOf("body")[0];
+const fabric = () => stagesOf("fabric")[0];
+
+/** The changes that give a measure. A body that has none of its own is swapped for a mannequin of these measures. */
+function measure(name, path, value) {
+    const stage = body();
+    if (path && stage?.name === "Mannequin") return [{ set: { path, value: inCm(value) } }];
+    const all = store.measures.measures
+        .filter((one) => ["height", "bust", "waist", "hip", name].includes(one.name))
+        .map((one) => `${one.name}: ${inCm(one.name === name ? value : one.value_m)}`);
+    return [{ swap: { stage: stage.id, with: `Mannequin(${all.join(", ")})` } }];
+}
+
+/** A size is taken as it is: the measures that are given would have the last word. */
+function size(value) {
+    const stage = body();
+    if (stage?.name !== "Mannequin")
+        return [{ swap: { stage: stage.id, with: `Mannequin(size: ${quote(value)})` } }];
+    const given = store.measures.measures.filter(({ name }) => stage.params[name] !== undefined);
+    return [
+        { set: { path: `${stage.path}.size`, value: quote(value) } },
+        ...given.map(({ name }) => ({ remove: `${stage.path}.${name}` })),
+    ];
+}
+
+function sizes(all) {
+    const choice = h(
+        "select",
+        { id: "size", "data-key": "size" },
+        h("option", { value: "" }, t("wearer.bySize")),
+        all.map((value) => h("option", { value }, value)),
+    );
+    choice.addEventListener(
+        "change",
+        () => choice.value && edit(t("edit.size", { size: choice.value }), () => size(choice.value)),
+    );
+    return h("p", { class: "line" }, h("label", { for: "size", word: "wearer.size" }), choice);
+}
+
+function measures(list) {
+    return h(
+        "div",
+        { class: "measures" },
+        list.map(({ name, path, value_m: value, min_m: min, max_m: max, iso }) => {
+            const id = `measure-${name}`;
+            const label =
+                t(`measure.${name}`) === `measure.${name}` ? name.replaceAll("_", " ") : t(`measure.${name}`);
+            return h(
+                "div",
+                { class: "measure" },
+                h("label", { for: id, title: iso }, label),
+                slider({
+                    id,
+                    label,
+                    value: Number((100 * value).toFixed(1)),
+                    min: Math.round(100 * min),
+                    max: Math.round(100 * max),
+                    step: 0.5,
+                    unit: "cm",
+                    take: (next) =>
+                        edit(t("edit.measure", { name: label, value: `${next} cm` }), () =>
+                            measure(name, path, next / 100),
+                        ),
+                }),
+            );
+        }),
+    );
+}
+
+function cloth(stage, card) {
+    const param = card?.params.find((one) => namesIn(one, card).length > 0);
+    const others = card?.params.filter((one) => one !== param) ?? [];
+    const names = param ? namesIn(param, card) : [];
+    const now = stage.params[param?.name]?.replaceAll('"', "") ?? param?.default.replaceAll('"', "");
+    return [
+        param &&
+            h(
+                "div",
+                { class: "choices fabrics", role: "group", label: "wearer.fabric" },
+                names.map((name) =>
+                    h(
+                        "button",
+                        {
+                            "aria-pressed": name === now,
+                            "data-key": `fabric-${name}`,
+                            onclick: () =>
+                                edit(t("edit.fabric", { name: fabricName(name) }), [
+                                    { set: { path: `${stage.path}.${param.name}`, value: quote(name) } },
+                                ]),
+                        },
+                        fabricName(name),
+                    ),
+                ),
+            ),
+        h(
+            "div",
+            { class: "params" },
+            others.map((one) => parameter(stage, card, one)),
+        ),
+    ];
+}
+
+const fabricName = (name) => {
+    const key = `fabric.${name}`;
+    return t(key) === key ? name : t(key);
+};
+
+export function mountWearer(root) {
+    const bodyPart = h("div");
+    const fabricPart = h("div");
+    replace(
+        root,
+        h("div", { class: "half" }, h("div", { class: "bar" }, h("h2", { word: "wearer.body" })), bodyPart),
+        h(
+            "div",
+            { class: "half" },
+            h("div", { class: "bar" }, h("h2", { word: "wearer.fabric" })),
+            fabricPart,
+        ),
+    );
+    const drawBody = whenChanged((found) =>
+        replace(
+            bodyPart,
+            found && found.measures.length > 0
+                ? [found.sizes.length > 0 && sizes(found.sizes), measures(found.measures)]
+                : h("p", { class: "hint", word: "wearer.noMeasures" }),
+        ),
+    );
+    const drawFabric = whenChanged((stage, known) =>
+        replace(
+            fabricPart,
+            stage && known
+                ? cloth(stage, store.cards.get(stage.name))
+                : h("p", { class: "hint", word: "wearer.noFabric" }),
+        ),
+    );
+    watch(["measures", "state", "cards", "pending"], () => {
+        if (!store.state || store.pending > 0) return;
+        drawBody(store.measures);
+        const stage = fabric();
+        drawFabric(
+            stage && { id: stage.id, name: stage.name, path: stage.path, params: stage.params },
+            store.cards.size > 0,
+        );
+    });
+}
