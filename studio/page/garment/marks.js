@@ -83,7 +83,7 @@ export function makeMarks(world, draw) {
 
     const put = (object, geometry, visible) => {
         object.geometry.dispose();
-        object.geometry = geometry ?? new BufferGeometry();
+        object.geometry = geometry || new BufferGeometry();
         object.visible = Boolean(geometry) && visible;
         draw();
     };

@@ -1,0 +1,75 @@
+// The begin of a project in an empty folder.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
+import { test } from "node:test";
+import { quiet, said, serve, settled, stateOf, until } from "./studio.mjs";
+
+const sample = (name) => path.resolve(import.meta.dirname, "../../pipelines/samples", name);
+
+/** Drops a file onto the page, as from a folder's window. */
+async function drop(page, file) {
+    const bytes = fs.readFileSync(file).toString("base64");
+    await page.evaluate(([name, base64]) => {
+        const data = new DataTransfer();
+        data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
+        document.getElementById("drop").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    }, [path.basename(file), bytes]);
+}
+
+test("a photo that is dropped is asked for its width and becomes a garment", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    await drop(page, sample("vest/front.jpg"));
+    await page.getByRole("heading", { name: "How wide is it?" }).waitFor();
+    await page.getByLabel("Width").fill("52");
+    await page.getByRole("button", { name: "Make the garment" }).click();
+
+    await settled(page);
+    assert.match(studio.file(), /"52 cm"/);
+    assert.ok(fs.existsSync(path.join(studio.folder, "front.jpg")));
+    assert.equal(await page.getByRole("button", { name: "Make the garment" }).count(), 0);
+    quiet(page);
+});
+
+test("a bank card beside the garment gives the width", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    await page.getByLabel("Choose a file").setInputFiles(sample("vest/front.jpg"));
+    await page.getByLabel("A bank card lies beside it").check();
+    await page.getByRole("button", { name: "Make the garment" }).click();
+
+    await until("a pipeline", async () => (await stateOf(page)).project.file);
+    assert.match(studio.file(), /scale: BankCard/);
+});
+
+test("a pattern file is sewn without a question", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    await page.getByLabel("Choose a file").setInputFiles(sample("pattern/shirt_specification.json"));
+
+    await until("a pipeline", async () => (await stateOf(page)).project.file);
+    assert.match(studio.file(), /shirt_specification\.json/);
+    await page.getByText("No photo: this garment comes from a pattern.").waitFor();
+});
+
+test("a file that is neither is refused in words", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    await page.getByLabel("Choose a file").setInputFiles({ name: "song.mp3", mimeType: "audio/mpeg", buffer: Buffer.from("x") });
+
+    await said(page, /song\.mp3 is neither a photo nor a pattern/);
+    assert.equal((await stateOf(page)).project.file, null);
+});
+
+test("a sample is one click away", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    await page.getByRole("button", { name: "Vest" }).click();
+
+    await until("a pipeline", async () => (await stateOf(page)).project.file);
+    await page.getByRole("region", { name: "Pattern" }).waitFor();
+    await page.locator("#pattern .piece").first().waitFor({ timeout: 120_000 });
+    quiet(page);
+});
