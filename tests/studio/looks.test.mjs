@@ -50,7 +50,7 @@ test("a Chinese browser is spoken to in Chinese, and the choice of a language is
     await page.getByRole("button", { name: "保存" }).waitFor();
     await page.getByRole("tab", { name: "人体与面料" }).waitFor();
     assert.equal(await page.evaluate(() => document.documentElement.lang), "zh-Hans");
-    await page.getByLabel("语言").selectOption("en");
+    await page.getByLabel("语言", { exact: true }).selectOption("en");
     await page.getByRole("button", { name: "Save" }).waitFor();
     await page.reload();
     await page.getByRole("tab", { name: "Body and fabric" }).waitFor();

@@ -96,7 +96,8 @@ async function open(address, { wait = true, context = null, address: _, ...optio
     page.setDefaultTimeout(20_000);
     const origin = new URL(address).origin;
     page.told = { errors: [], outside: [] };
-    page.on("console", (message) => message.type() === "error" && page.told.errors.push(message.text()));
+    page.on("console", (message) => message.type() === "error"
+        && page.told.errors.push(`${message.text()} ${message.location().url}`));
     page.on("pageerror", (error) => page.told.errors.push(String(error)));
     page.on("request", (request) => {
         const url = request.url();

@@ -12,15 +12,23 @@ const SAMPLES = ["vest", "tshirt", "skirt", "trousers", "shirt_pattern"];
 
 let file = null;
 
-async function begin(what) {
+/** `changes` are made to the new file. */
+async function begin(what, changes = []) {
     sayWord("begin.busy");
     try {
-        await postJson("/api/begin", what);
+        const { edit } = await postJson("/api/begin", what);
+        if (changes.length > 0) await postJson("/api/edit", { edit, words: t("edit.begin"), changes });
         sayWord("begin.done");
     } catch (error) {
         sayError(error);
     }
 }
+
+/** The photo's scale is that of a card in it, in the place of a width. */
+const BY_CARD = [
+    { set: { path: "photos.front.scale", value: "BankCard" } },
+    { remove: "photos.front.width" },
+];
 
 async function take(chosen, root) {
     if (!chosen) return;
@@ -83,7 +91,8 @@ function askWidth(root) {
         event.preventDefault();
         try {
             const photo = await upload(file);
-            await begin({ photo, width: byWidth.checked ? `${Number(width.value)} cm` : null });
+            const measured = byWidth.checked ? `${Number(width.value)} cm` : null;
+            await begin({ photo, width: measured }, measured ? [] : BY_CARD);
         } catch (error) {
             sayError(error);
         }

@@ -59,32 +59,41 @@ export function makeCloth(world, draw) {
     let looks = "texture";
     let version = 0;
     let moving = 0;
+    const pictures = new Map();
 
+    /** A picture is kept until the next one is there, so that the garment does not go dark between them. */
     function textured() {
-        const pictures = new Map();
-        return mesh.panels.map((panel) => {
-            const n = panel.texture ?? 0;
-            if (!pictures.has(n)) {
-                const texture = loader.load(`/api/texture/${n}?v=${version}`, draw, undefined, () =>
-                    show("panels"),
-                );
+        return mesh.panels.map(({ texture: n, colour }) => {
+            if (n === null || n === undefined) return plain(colour);
+            if (!pictures.has(n)) pictures.set(n, new MeshLambertMaterial({ side: DoubleSide }));
+            const material = pictures.get(n);
+            if (material.userData.version === version) return material;
+            material.userData.version = version;
+            loader.load(`/api/texture/${n}?v=${version}`, (texture) => {
                 texture.colorSpace = SRGBColorSpace;
                 texture.flipY = false;
                 texture.anisotropy = 4;
-                pictures.set(n, new MeshLambertMaterial({ map: texture, side: DoubleSide }));
-            }
-            return pictures.get(n);
+                material.map?.dispose();
+                material.map = texture;
+                material.needsUpdate = true;
+                draw();
+            });
+            return material;
         });
     }
+
+    const plain = (rgb) => {
+        const [r, g, b] = rgb.map((c) => (c > 1 ? c / 255 : c));
+        const material = new MeshLambertMaterial({ side: DoubleSide });
+        material.color.setRGB(r, g, b, SRGBColorSpace);
+        return material;
+    };
 
     /** Shows the garment by its texture, its panels' colours, or a map; gives the map's scale. */
     function show(next) {
         looks = next;
         if (!mesh) return null;
-        for (const material of object.material) {
-            material.map?.dispose();
-            material.dispose();
-        }
+        for (const material of object.material) if (!material.map) material.dispose();
         let scale = null;
         if (looks === "texture" && mesh.uv) object.material = textured();
         else {

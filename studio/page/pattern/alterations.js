@@ -24,7 +24,7 @@ function before() {
         ({ name, role }) => ["Seams", "Unpick"].includes(name) || sameRole(role, "mesher"),
     );
     const ahead = stages.slice(0, stop < 0 ? stages.length : stop);
-    const inList = ahead.filter(({ path }) => path.startsWith("stages."));
+    const inList = ahead.filter(({ path }) => path?.startsWith("stages."));
     const section =
         ahead.find(({ path }) => path === "style") ??
         ahead.find(({ path }) => path === "pattern") ??

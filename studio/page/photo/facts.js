@@ -6,11 +6,9 @@ import { edit } from "../server/edits.js";
 import { stagesOf, store, watch, whenChanged } from "../server/store.js";
 import { inCm, metres } from "../ron/lengths.js";
 import { choicesOf } from "../tools/card_types.js";
-import { photo } from "./shown.js";
+import { entryOf, photo } from "./shown.js";
 
 const OBJECTS = ["BankCard", "A4", "Letter", "Ruler"];
-
-const entryOf = (name) => store.state?.stages.find((stage) => stage.path === `photos.${name}`);
 
 /** The photo is given its scale by one of the two; the other one goes. */
 function scaleBy(name, field, value) {

@@ -7,6 +7,7 @@ import { t } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { stagesOf, store } from "../server/store.js";
 import { map, pair, tryRead } from "../ron/ron.js";
+import { entryOf } from "./shown.js";
 
 /** The stage that takes landmarks, where the pipeline has one. */
 export const cutter = () =>
@@ -33,23 +34,33 @@ function changes(name, share) {
     return [{ set: { path, value: map([...all].map(([key, [x, y]]) => [key, pair(x, y)])) } }];
 }
 
+/** A photo that is another one's mirror image has no landmarks of its own. */
+const isMirror = (name) => name !== "front" && !entryOf(name)?.params.file;
+
+/** Corners of edges that are no landmark are called by their two edges. */
+const hasName = (mark) => !mark.name.includes("/");
+
 let drawn = "";
 
 /** Draws the photo's landmarks; nothing is redrawn while one of them is being moved. */
 export function landmarks({ root, photo, zoom, sizes }) {
-    const canMove = Boolean(cutter());
+    const canMove = Boolean(cutter()) && !isMirror(photo.name);
     const now = JSON.stringify([photo, canMove, document.documentElement.lang]);
     if (now === drawn || store.pending > 0 || root.querySelector(".moving")) return;
     drawn = now;
     replace(
         root,
-        photo.landmarks.map((mark) => handle(mark, { photo, zoom, canMove })),
+        photo.landmarks.map((mark) => handle(mark, { photo, zoom, canMove: canMove && hasName(mark) })),
     );
     sizes();
 }
 
+/** The name in the file: landmarks of a photo of the back say so. */
+const keyOf = (photo, name) => (photo.name === "front" ? name : `${photo.name}.${name}`);
+
 function handle(mark, { photo, zoom, canMove }) {
     const { name, x, y } = mark;
+    const key = keyOf(photo, name);
     const label = t(mark.given ? "landmark.given" : "landmark.found", {
         name: nice(name),
         x: x.toFixed(0),
@@ -69,10 +80,11 @@ function handle(mark, { photo, zoom, canMove }) {
     );
     if (!canMove) return el;
     const end = async (dx, dy) => {
-        const share = [(x + dx) / photo.width, (y + dy) / photo.height].map((s) =>
+        // Places are those of pixels' centres.
+        const share = [(x + dx + 0.5) / photo.width, (y + dy + 0.5) / photo.height].map((s) =>
             Math.min(1, Math.max(0, s)),
         );
-        await edit(t("edit.landmark", { name: nice(name) }), () => changes(name, share));
+        await edit(t("edit.landmark", { name: nice(name) }), () => changes(key, share));
         el.classList.remove("moving");
     };
     const move = (dx, dy) => {
@@ -82,7 +94,7 @@ function handle(mark, { photo, zoom, canMove }) {
     };
     draggable(el, { place: zoom.place, move, end, step: 1 });
     const giveBack = () =>
-        mark.given && edit(t("edit.landmarkBack", { name: nice(name) }), () => changes(name, null));
+        mark.given && edit(t("edit.landmarkBack", { name: nice(name) }), () => changes(key, null));
     el.addEventListener("dblclick", giveBack);
     el.addEventListener("keydown", (event) => event.key === "Delete" && giveBack());
     return el;

@@ -9,7 +9,7 @@ import { edgeLine, litEdges } from "../garment/edge_line.js";
 import { landmarks } from "./landmarks.js";
 import { strokes } from "./strokes.js";
 import { mountFacts } from "./facts.js";
-import { photo, photoOf, showPhoto } from "./shown.js";
+import { entryOf, photo, photoOf, showPhoto } from "./shown.js";
 
 /** The place of the garment at a point of the photo. */
 function spotAt(at) {
@@ -20,6 +20,12 @@ function spotAt(at) {
         if (found) return { piece: panel.name, spot: spotOf(garment, found.triangle, found.shares) };
     }
     return {};
+}
+
+/** The address of a picture, another one when what it shows has changed. */
+function addressOf(kind, name, shows = "") {
+    const mark = [...shows].reduce((sum, char) => (31 * sum + char.charCodeAt(0)) >>> 0, 7);
+    return `/api/${kind}/${encodeURIComponent(name)}?v=${mark.toString(36)}`;
 }
 
 function choosers(bar, mask) {
@@ -101,14 +107,18 @@ export function mountPhoto(root) {
         for (const el of marks.querySelectorAll("circle")) el.setAttribute("r", 7 * scale);
     }
 
-    const drawPhoto = whenChanged((name, width, height, version) => {
+    const drawPhoto = whenChanged((name, width, height, file) => {
         for (const el of [picture, inside, tint]) {
             el.setAttribute("width", width);
             el.setAttribute("height", height);
         }
-        picture.setAttribute("href", `/api/photo/${encodeURIComponent(name)}?v=${version}`);
-        inside.setAttribute("href", `/api/mask/${encodeURIComponent(name)}?v=${version}`);
+        picture.setAttribute("href", addressOf("photo", name, file));
         zoom.fit([0, 0, width, height]);
+    });
+    // A mask is there when its outline is, and another one with another outline.
+    const drawMask = whenChanged((name, mine) => {
+        if (mine.length > 0) inside.setAttribute("href", addressOf("mask", name, JSON.stringify(mine)));
+        else inside.removeAttribute("href");
     });
 
     const drawOutlines = whenChanged((mine) =>
@@ -134,8 +144,10 @@ export function mountPhoto(root) {
         facts.hidden = !now;
         chooser();
         if (!now) return;
-        drawPhoto(now.name, now.width, now.height, store.view.view);
-        drawOutlines(store.view.outlines.filter(({ panel }) => photoOf(panel) === now.name));
+        const mine = store.view.outlines.filter(({ panel }) => photoOf(panel) === now.name);
+        drawPhoto(now.name, now.width, now.height, entryOf(now.name)?.params.file);
+        drawMask(now.name, mine);
+        drawOutlines(mine);
         landmarks({ root: marks, photo: now, zoom, sizes });
         sizes();
         light();

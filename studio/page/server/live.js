@@ -4,7 +4,7 @@
 // fetch at a time, so that a slow page skips what is old.
 
 import { getBytes, getJson } from "./requests.js";
-import { store, tell } from "./store.js";
+import { stagesOf, store, tell } from "./store.js";
 import { readMesh } from "./mesh_file.js";
 import { sayError } from "../head/status.js";
 
@@ -33,6 +33,8 @@ const loadText = latest(async () => {
     takeState(state);
 });
 
+let seenBody = "";
+
 const loadView = latest(async () => {
     store.view = await getJson("/api/view");
     tell("view");
@@ -43,10 +45,12 @@ const loadView = latest(async () => {
         store.garment = null;
     }
     tell("garment");
-    if (!store.view.body) store.body = null;
-    else {
-        const bytes = await getBytes("/api/body");
-        store.body = bytes && readMesh(bytes);
+    const bodies = stagesOf("body").map(({ id, state, seconds }) => [id, state, seconds]);
+    const made = store.view.body ? JSON.stringify([store.state.project.edit, bodies]) : "";
+    if (made !== seenBody) {
+        seenBody = made;
+        const mesh = made && (await getBytes("/api/body"));
+        store.body = mesh ? readMesh(mesh) : null;
     }
     tell("body");
 });
@@ -100,7 +104,8 @@ export function takeState(state) {
         seenView = state.view;
         loadView();
     }
-    if (state.project.edit !== followed) {
+    // A text with faults has no measures.
+    if (state.project.edit !== followed && state.faults.length === 0) {
         followed = state.project.edit;
         loadMeasures();
         loadTrade();
@@ -109,7 +114,7 @@ export function takeState(state) {
     if (run !== seenRun) {
         seenRun = run;
         loadFiles();
-        if (state.run.state === "done") loadTrade();
+        if (state.run.state === "done" && state.faults.length === 0) loadTrade();
     }
 }
 

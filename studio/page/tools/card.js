@@ -55,7 +55,7 @@ function told(stage) {
 /** All of a stage that the page shows of it. */
 export function cardOf(stage) {
     const card = store.cards.get(stage.name);
-    const inList = stage.path.startsWith("stages.");
+    const inList = stage.path?.startsWith("stages.");
     const [first, ...rest] = (card?.doc ?? "").split("\n\n");
     return [
         h(
@@ -85,7 +85,9 @@ export function cardOf(stage) {
                 }),
         ),
         told(stage),
-        (card?.params ?? []).length > 0 &&
+        // A stage that the file does not name has no place where parameters could stand.
+        stage.path &&
+            (card?.params ?? []).length > 0 &&
             h(
                 "div",
                 { class: "params" },
