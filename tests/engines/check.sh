@@ -229,7 +229,7 @@ s3_started() {
     export AWS_ENDPOINT_URL="http://127.0.0.1:$port" AWS_ALLOW_HTTP=true
     moto_server -H 127.0.0.1 -p "$port" >"$scratch/moto.log" 2>&1 &
     daemons+=($!)
-    awaited python tests/engines/s3.py make toile "$scratch/set" in
+    awaited python tests/engines/s3.py make toile "$scratch/set" in 2>"$scratch/s3_started.log"
 }
 
 # Two shares, each in an empty folder of its own. The first one is killed when its second garment is in the store, and started
