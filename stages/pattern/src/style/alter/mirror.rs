@@ -1,6 +1,6 @@
 //! Mirror images of pieces: another one, or one that is there already.
 
-use super::names;
+use super::names::{self, other_side};
 use super::shown::Showing;
 use crate::pattern::copies::mirrored;
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,14 +35,6 @@ pub(super) fn mirror(
     sew_within(piece, name, pattern);
     showing.mirror(piece, name);
     Ok(())
-}
-
-/// The name of an edge on the other side of the body.
-pub(super) fn other_side(name: &str) -> String {
-    match Hand::split(name) {
-        (stem, Some(hand)) => hand.other().name(stem),
-        _ => name.to_owned(),
-    }
 }
 
 /// Left and right exchanged in the names of its edges and lines.

@@ -40,3 +40,11 @@ pub(super) fn corner(piece: &Piece, corner: usize) -> Result<usize, StageError> 
     Err(StageError::invalid(format!("the piece \"{}\" has no corner {corner}", piece.name))
         .hint(format!("its corners, each with the edge that starts there, are {}", starts.join(", "))))
 }
+
+/// The name of an edge on the other side of the body.
+pub(super) fn other_side(name: &str) -> String {
+    match Hand::split(name) {
+        (stem, Some(hand)) => hand.other().name(stem),
+        _ => name.to_owned(),
+    }
+}

@@ -4,7 +4,7 @@
 //! moved, scaled or parted keeps these places, so that its part of the photo goes along; the inside
 //! follows the outline ([`Outline::lying`]).
 
-use super::mirror::other_side;
+use super::names::other_side;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
