@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { change, quiet, serve, settled } from "./studio.mjs";
+import { change, idle, quiet, serve, settled } from "./studio.mjs";
 
 const studio = await serve("vest.ron");
 const page = await studio.open();
@@ -31,8 +31,9 @@ test("arrow keys turn it, plus and minus zoom, Home shows all", async () => {
 });
 
 test("at rest nothing is drawn", async () => {
+    await idle(page);
     await page.mouse.move(5, 5);
-    await page.waitForTimeout(700);
+    await page.waitForTimeout(1500);
     const before = await pictures();
     await page.waitForTimeout(700);
     assert.equal(await pictures(), before);

@@ -142,6 +142,12 @@ export async function settled(page) {
     return state;
 }
 
+/** Waits until nothing runs any more: the draft and the full run that follows it. */
+export const idle = (page) => until("the end of the runs", async () => {
+    const { run } = await stateOf(page);
+    return run.kind === "full" && run.state !== "running";
+}, 2 * RUN);
+
 /** Does what makes one edit, and waits until the program has it; gives the state after it. */
 export async function change(page, act) {
     const { project, run } = await stateOf(page);

@@ -165,7 +165,8 @@ export function mountGarment(root) {
                     at && store.garment && at.triangle < store.garment.triangles.length / 3
                         ? at.position
                         : null;
-                marks.light(store.garment, name, litEdges(), place);
+                const edges = litEdges();
+                marks.light(store.garment, edges.length > 0 ? null : name, edges, place);
                 figures.at(looks.value, at);
             }),
         );

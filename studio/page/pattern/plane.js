@@ -15,7 +15,10 @@ const bounds = (points) => {
  * Places pieces (points in metres, y up). Gives `{box, at}`: the box that holds all, and for each piece the functions
  * between its own coordinates and the drawing's.
  */
-export function arrange(pieces) {
+export function arrange(all) {
+    // The front first, the back last, as people look at them.
+    const rank = ({ name }) => (name.startsWith("front") ? 0 : name.startsWith("back") ? 2 : 1);
+    const pieces = [...all].sort((a, b) => rank(a) - rank(b));
     const sizes = pieces.map(({ points }) => {
         const [x0, y0, x1, y1] = bounds(points).map((x) => 1000 * x);
         return { x0, y1, width: x1 - x0, height: y1 - y0 };

@@ -15,7 +15,7 @@ function scaleBy(name, field, value) {
     const other = field === "width" ? "scale" : "width";
     const path = `photos.${name}`;
     const set = { set: { path: `${path}.${field}`, value } };
-    return entryOf(name)?.params[other] ? [set, { remove: `${path}.${other}` }] : [set];
+    return entryOf(name)?.[other] ? [set, { remove: `${path}.${other}` }] : [set];
 }
 
 function scale(name, width, object) {
@@ -113,7 +113,7 @@ export function mountFacts(root) {
         const param = kindStages[0] && paramOf(kindStages[0], "style");
         draw(
             now.name,
-            entryOf(now.name)?.params,
+            entryOf(now.name),
             kindStages,
             kindStages[0]?.style ?? param?.default ?? "Auto",
             param ? choicesOf(param) : [],

@@ -35,7 +35,7 @@ function changes(name, share) {
 }
 
 /** A photo that is another one's mirror image has no landmarks of its own. */
-const isMirror = (name) => name !== "front" && !entryOf(name)?.params.file;
+const isMirror = (name) => name !== "front" && !entryOf(name)?.file;
 
 /** Corners of edges that are no landmark are called by their two edges. */
 const hasName = (mark) => !mark.name.includes("/");

@@ -9,7 +9,7 @@ import { edgeLine, litEdges } from "../garment/edge_line.js";
 import { landmarks } from "./landmarks.js";
 import { strokes } from "./strokes.js";
 import { mountFacts } from "./facts.js";
-import { entryOf, photo, photoOf, showPhoto } from "./shown.js";
+import { entryOf, photo, photoOf, photos, showPhoto } from "./shown.js";
 
 /** The place of the garment at a point of the photo. */
 function spotAt(at) {
@@ -45,7 +45,7 @@ function choosers(bar, mask) {
     );
     return () =>
         fill(
-            (store.view?.photos ?? []).map((p) => p.name),
+            photos().map((p) => p.name),
             photo()?.name,
         );
 }
@@ -145,7 +145,7 @@ export function mountPhoto(root) {
         chooser();
         if (!now) return;
         const mine = store.view.outlines.filter(({ panel }) => photoOf(panel) === now.name);
-        drawPhoto(now.name, now.width, now.height, entryOf(now.name)?.params.file);
+        drawPhoto(now.name, now.width, now.height, entryOf(now.name)?.file);
         drawMask(now.name, mine);
         drawOutlines(mine);
         landmarks({ root: marks, photo: now, zoom, sizes });
@@ -155,7 +155,9 @@ export function mountPhoto(root) {
     watch(["view", "cards", "state", "photo", "pending"], redraw);
 
     function light() {
-        for (const el of outlines.children) el.classList.toggle("lit", isLit("piece", el.dataset.panel));
+        // Edges are seen beside an outline that is not lit.
+        const byEdge = litEdges().length > 0;
+        for (const el of outlines.children) el.classList.toggle("lit", !byEdge && isLit("piece", el.dataset.panel));
         replace(
             lines,
             litEdges()

@@ -1,14 +1,28 @@
 // Which photo is shown, and which photo shows a panel.
 
+import { tryRead } from "../ron/ron.js";
 import { store, tell } from "../server/store.js";
 
 let chosen = null;
 
-/** The photo that is shown: the one that was chosen, else the first. */
-export const photo = () => store.view?.photos.find((p) => p.name === chosen) ?? store.view?.photos[0];
+/** Photos, the front's first. */
+export const photos = () =>
+    [...(store.view?.photos ?? [])].sort((a, b) => (b.name === "front") - (a.name === "front"));
 
-/** The photo's entry in the file. */
-export const entryOf = (name) => store.state?.stages.find((stage) => stage.path === `photos.${name}`);
+/** The photo that is shown: the one that was chosen, else the first. */
+export const photo = () => photos().find((p) => p.name === chosen) ?? photos()[0];
+
+/** What the file says of a photo, as it is written there: {file, width, scale}; nothing of a mirror image. */
+export function entryOf(name) {
+    const text = store.state?.stages.find((stage) => stage.path === "photos")?.params.photos;
+    const entry = tryRead(text)?.entries?.find(([key]) => key === name)?.[1];
+    return entry?.fields && valuesOf(text, entry.fields);
+}
+
+const valuesOf = (text, fields) =>
+    Object.fromEntries(
+        Object.entries(fields).map(([key, value]) => [key, text.slice(value.start, value.end)]),
+    );
 
 /** Which photo a panel is seen in. */
 export function photoOf(panel) {

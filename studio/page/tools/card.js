@@ -87,6 +87,7 @@ export function cardOf(stage) {
         told(stage),
         // A stage that the file does not name has no place where parameters could stand.
         stage.path &&
+            stage.path !== "photos" &&
             (card?.params ?? []).length > 0 &&
             h(
                 "div",

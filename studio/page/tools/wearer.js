@@ -20,6 +20,7 @@ function measure(name, path, value) {
     if (path && stage?.name === "Mannequin") return [{ set: { path, value: inCm(value) } }];
     const all = store.measures.measures
         .filter((one) => ["height", "bust", "waist", "hip", name].includes(one.name))
+        .filter((one) => one.name === name || one.value_m !== null)
         .map((one) => `${one.name}: ${inCm(one.name === name ? value : one.value_m)}`);
     return [{ swap: { stage: stage.id, with: `Mannequin(${all.join(", ")})` } }];
 }
@@ -65,7 +66,8 @@ function measures(list) {
                 slider({
                     id,
                     label,
-                    value: Number((100 * value).toFixed(1)),
+                    // A measure that is not known yet has an empty field.
+                    value: value === null ? "" : Number((100 * value).toFixed(1)),
                     min: Math.round(100 * min),
                     max: Math.round(100 * max),
                     step: 0.5,
