@@ -11,11 +11,18 @@ const sample = (name) => path.resolve(import.meta.dirname, "../../pipelines/samp
 /** Drops a file onto the page, as from a folder's window. */
 async function drop(page, file) {
     const bytes = fs.readFileSync(file).toString("base64");
-    await page.evaluate(([name, base64]) => {
-        const data = new DataTransfer();
-        data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
-        document.getElementById("drop").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
-    }, [path.basename(file), bytes]);
+    await page.evaluate(
+        ([name, base64]) => {
+            const data = new DataTransfer();
+            data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
+            document
+                .getElementById("drop")
+                .dispatchEvent(
+                    new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }),
+                );
+        },
+        [path.basename(file), bytes],
+    );
 }
 
 test("a photo that is dropped is asked for its width and becomes a garment", async () => {
@@ -57,7 +64,9 @@ test("a pattern file is sewn without a question", async () => {
 test("a file that is neither is refused in words", async () => {
     const studio = await serve();
     const page = await studio.open({ wait: false });
-    await page.getByLabel("Choose a file").setInputFiles({ name: "song.mp3", mimeType: "audio/mpeg", buffer: Buffer.from("x") });
+    await page
+        .getByLabel("Choose a file")
+        .setInputFiles({ name: "song.mp3", mimeType: "audio/mpeg", buffer: Buffer.from("x") });
 
     await said(page, /song\.mp3 is neither a photo nor a pattern/);
     assert.equal((await stateOf(page)).project.file, null);

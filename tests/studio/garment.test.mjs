@@ -86,7 +86,8 @@ test("the body, a cut and the garment before an edit change the picture", async 
 
 test("a garment of the vest's size turns smoothly without a graphics card", async () => {
     const rate = await canvas.evaluate(async (el) => {
-        const turn = () => el.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true }));
+        const turn = () =>
+            el.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true }));
         const [from, began] = [Number(el.dataset.pictures), performance.now()];
         while (performance.now() - began < 2000) {
             turn();

@@ -24,7 +24,8 @@ test("an edit that comes second is tried again on what the first one left", asyn
     await page.evaluate(async (number) => {
         const changes = [{ set: { path: "stages.Canny.smooth", value: "2" } }];
         const taken = await fetch("/api/edit", {
-            method: "POST", headers: { "Content-Type": "application/json" },
+            method: "POST",
+            headers: { "Content-Type": "application/json" },
             body: JSON.stringify({ edit: number, words: "by another", changes }),
         });
         if (!taken.ok) throw new Error(await taken.text());

@@ -13,7 +13,8 @@ const overflow = (page) => page.evaluate(() => document.documentElement.scrollWi
 
 test("at 1280 px the three panes stand beside each other", async () => {
     const boxes = [];
-    for (const name of ["Photo", "Pattern", "Garment"]) boxes.push(await first.getByRole("region", { name }).boundingBox());
+    for (const name of ["Photo", "Pattern", "Garment"])
+        boxes.push(await first.getByRole("region", { name }).boundingBox());
     assert.ok(boxes[0].x < boxes[1].x && boxes[1].x < boxes[2].x);
     assert.equal(boxes[0].y, boxes[2].y);
     assert.equal(await overflow(first), 0);
@@ -59,15 +60,28 @@ test("a Chinese browser is spoken to in Chinese, and the choice of a language is
 });
 
 test("every sentence is there in both languages", async () => {
-    const { en, zh } = Object.assign({}, await import("../../studio/page/words/en.js"), await import("../../studio/page/words/zh.js"));
-    assert.deepEqual(Object.keys(en).filter((key) => !(key in zh)), []);
+    const { en, zh } = Object.assign(
+        {},
+        await import("../../studio/page/words/en.js"),
+        await import("../../studio/page/words/zh.js"),
+    );
+    assert.deepEqual(
+        Object.keys(en).filter((key) => !(key in zh)),
+        [],
+    );
     const gaps = (text) => (text.match(/\{\w+\}/g) ?? []).sort().join();
-    assert.deepEqual(Object.keys(en).filter((key) => gaps(en[key]) !== gaps(zh[key])), []);
+    assert.deepEqual(
+        Object.keys(en).filter((key) => gaps(en[key]) !== gaps(zh[key])),
+        [],
+    );
 });
 
 test("by keyboard alone: to a corner of the pattern, move it, take it back, save", async () => {
     const page = await studio.open();
-    const focused = () => page.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent);
+    const focused = () =>
+        page.evaluate(
+            () => document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent,
+        );
     const tabTo = async (pattern) => {
         for (let i = 0; i < 150; i++) {
             await page.keyboard.press("Tab");
@@ -121,7 +135,9 @@ test("axe finds nothing serious where a project begins", async () => {
 
 test("the page stands within a second, and asks only the program", async () => {
     const page = await studio.open({ wait: false });
-    const took = await page.evaluate(() => performance.getEntriesByType("navigation")[0].domContentLoadedEventEnd);
+    const took = await page.evaluate(
+        () => performance.getEntriesByType("navigation")[0].domContentLoadedEventEnd,
+    );
     assert.ok(took < 1000, `${took} ms`);
     await page.getByRole("tab", { name: "Stages" }).waitFor();
     assert.ok((await stateOf(page)).project.file);

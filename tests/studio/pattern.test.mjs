@@ -13,7 +13,9 @@ const seams = async () => Number(/\d+/.exec(await pattern.getByText(/^Seams: /).
 /** Clicks on an edge: its middle, since the box of a curve is not the curve. */
 async function click(name) {
     const [x, y] = await edge(name).evaluate((path) => {
-        const { x, y } = path.getPointAtLength(path.getTotalLength() * 0.4).matrixTransform(path.getScreenCTM());
+        const { x, y } = path
+            .getPointAtLength(path.getTotalLength() * 0.4)
+            .matrixTransform(path.getScreenCTM());
         return [x, y];
     });
     await page.mouse.click(x, y);
@@ -36,9 +38,14 @@ test("a piece that is chosen is chosen in the photo as well", async () => {
 });
 
 test("a corner that is dragged is an alteration in the file", async () => {
-    const state = await change(page, () => drag(page, pattern.locator('.corner[data-piece="front"][data-corner="2"]'), 0, 12));
+    const state = await change(page, () =>
+        drag(page, pattern.locator('.corner[data-piece="front"][data-corner="2"]'), 0, 12),
+    );
 
-    assert.match(state.text, /Alter\(alterations: \[MoveCorner\(piece: "front", corner: 2, x: "[\d.-]+ mm", y: "-[\d.]+ mm"\)\]\)/);
+    assert.match(
+        state.text,
+        /Alter\(alterations: \[MoveCorner\(piece: "front", corner: 2, x: "[\d.-]+ mm", y: "-[\d.]+ mm"\)\]\)/,
+    );
     const stages = state.stages.map(({ name }) => name);
     assert.ok(stages.indexOf("Alter") < stages.findIndex((name) => name.endsWith("Mesher")), stages.join());
     await nothing();
@@ -57,7 +64,9 @@ test("a seam is unpicked, and its edges are sewn by two clicks", async () => {
     await nothing();
     const all = await seams();
     await click("front.side_left");
-    const unpicked = await change(page, () => pattern.getByRole("button", { name: "Unpick the seam" }).click());
+    const unpicked = await change(page, () =>
+        pattern.getByRole("button", { name: "Unpick the seam" }).click(),
+    );
     assert.match(unpicked.text, /Unsew\(edge: "front\.side_left"\)/);
     await nothing();
     await until("one seam less", async () => (await seams()) === all - 1);
@@ -72,7 +81,9 @@ test("a seam is unpicked, and its edges are sewn by two clicks", async () => {
 
 test("a seam is turned round", async () => {
     await click("front.side_left");
-    const state = await change(page, () => pattern.getByRole("button", { name: "Turn the seam round" }).click());
+    const state = await change(page, () =>
+        pattern.getByRole("button", { name: "Turn the seam round" }).click(),
+    );
     assert.match(state.text, /Sew\(a: "front\.side_left", b: "back\.side_left", reversed: true\)/);
     await change(page, () => page.keyboard.press("Control+z"));
     await nothing();

@@ -10,7 +10,10 @@ const landmark = (name) => page.locator("#photo").getByRole("button", { name: ne
 
 /** The length of the front's neck in centimetres, as the pattern tells it. */
 async function neck() {
-    const label = await page.locator('#pattern .reach[data-edge^="front.neck"]').first().getAttribute("aria-label");
+    const label = await page
+        .locator('#pattern .reach[data-edge^="front.neck"]')
+        .first()
+        .getAttribute("aria-label");
     return Number(/, ([\d.]+) cm/.exec(label)[1]);
 }
 
@@ -33,7 +36,7 @@ test("a landmark that is dragged changes the neck", async () => {
 
 test("a landmark is moved by arrow keys, one edit for several presses", async () => {
     await settled(page);
-    const before = (await page.locator("#undo").getAttribute("title"));
+    const before = await page.locator("#undo").getAttribute("title");
     await landmark("armpit left").focus();
     const state = await change(page, async () => {
         for (const key of ["ArrowDown", "ArrowDown", "Shift+ArrowDown"]) await page.keyboard.press(key);
@@ -65,7 +68,9 @@ test("the width is said in centimetres", async () => {
 
 test("the kind is one of the card's choices, for the pattern and the wearer", async () => {
     await page.getByText("Kind: Vest").click();
-    const state = await change(page, () => page.getByRole("button", { name: "T-shirt", exact: true }).click());
+    const state = await change(page, () =>
+        page.getByRole("button", { name: "T-shirt", exact: true }).click(),
+    );
 
     assert.match(state.text, /Block\(style: TShirt/);
     assert.match(state.text, /Fitting\(style: TShirt/);

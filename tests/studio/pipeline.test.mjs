@@ -37,22 +37,35 @@ test("a size takes the place of the measures", async () => {
 
 test("a parameter is set on its card, and given back", async () => {
     await tab("Stages");
-    await page.locator("#stages").getByRole("button", { name: /^GridMesher/ }).click();
+    await page
+        .locator("#stages")
+        .getByRole("button", { name: /^GridMesher/ })
+        .click();
     const edge = page.locator("#stages").getByRole("slider", { name: "GridMesher edge" });
     await edge.focus();
     const state = await change(page, () => page.keyboard.press("ArrowRight"));
     assert.match(state.text, /GridMesher\(edge: "\d+(\.\d+)? mm"\)/);
     assert.notEqual(state.text, begun);
-    const back = await change(page, () => page.locator("#stages .param", { hasText: "edge" }).getByRole("button", { name: "Back to the default" }).click());
+    const back = await change(page, () =>
+        page
+            .locator("#stages .param", { hasText: "edge" })
+            .getByRole("button", { name: "Back to the default" })
+            .click(),
+    );
     assert.doesNotMatch(back.text, /GridMesher\(edge/);
     await change(page, () => page.keyboard.press("Control+z"));
 });
 
 test("the mesher is swapped for another one", async () => {
-    const state = await change(page, () => page.getByLabel("Swap for another stage of its role").selectOption("DelaunayMesher"));
+    const state = await change(page, () =>
+        page.getByLabel("Swap for another stage of its role").selectOption("DelaunayMesher"),
+    );
     assert.match(state.text, /DelaunayMesher\(\)/);
     assert.doesNotMatch(state.text, /^ *GridMesher/m);
-    await page.locator("#stages").getByRole("button", { name: /^DelaunayMesher/ }).waitFor();
+    await page
+        .locator("#stages")
+        .getByRole("button", { name: /^DelaunayMesher/ })
+        .waitFor();
     await change(page, () => page.keyboard.press("Control+z"));
 });
 
@@ -84,7 +97,10 @@ test("a fault in the text is told with its line, and nothing is run", async () =
     await place.waitFor();
     await place.click();
     assert.match(await field.evaluate((el) => el.value.slice(el.selectionStart, el.selectionEnd)), /Otsuu/);
-    assert.equal((await stateOf(page)).run.state === "running" && (await stateOf(page)).faults.length > 0, false);
+    assert.equal(
+        (await stateOf(page)).run.state === "running" && (await stateOf(page)).faults.length > 0,
+        false,
+    );
 
     await field.fill(text.replace('name: "vest"', 'name: "my vest"'));
     await page.getByText("None.").waitFor();
@@ -105,10 +121,14 @@ test("a point of accuracy and time is taken, and its files are listed", async ()
     await tab("Accuracy and time");
     await page.getByRole("button", { name: /^Draft: error 2 mm/ }).waitFor();
     await page.getByRole("button", { name: "Take Draft" }).click();
-    await until("a full run", async () => {
-        const { run } = await stateOf(page);
-        return run.kind === "full" && run.state === "done";
-    }, 300_000);
+    await until(
+        "a full run",
+        async () => {
+            const { run } = await stateOf(page);
+            return run.kind === "full" && run.state === "done";
+        },
+        300_000,
+    );
     await tab("Files");
     await page.getByRole("link", { name: "garment.glb" }).waitFor();
 });

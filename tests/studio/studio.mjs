@@ -41,7 +41,10 @@ export function folderOf(pipeline) {
     ended.push(() => fs.rmSync(folder, { recursive: true, force: true }));
     if (!pipeline) return folder;
     const text = fs.readFileSync(path.join(root, "pipelines", pipeline), "utf8");
-    fs.writeFileSync(path.join(folder, "pipeline.ron"), text.replace(/Mesher\(edge: "1\d mm"\)/, 'Mesher(edge: "24 mm")'));
+    fs.writeFileSync(
+        path.join(folder, "pipeline.ron"),
+        text.replace(/Mesher\(edge: "1\d mm"\)/, 'Mesher(edge: "24 mm")'),
+    );
     for (const input of INPUTS[pipeline]) {
         fs.cpSync(path.join(root, "pipelines", input), path.join(folder, input), { recursive: true });
     }
@@ -50,7 +53,9 @@ export function folderOf(pipeline) {
 
 /** Starts `toile studio` on a folder. */
 export async function serve(pipeline, { folder = folderOf(pipeline) } = {}) {
-    const program = spawn(process.env.TOILE_BIN, ["studio", "--no-open", folder], { stdio: ["ignore", "pipe", "pipe"] });
+    const program = spawn(process.env.TOILE_BIN, ["studio", "--no-open", folder], {
+        stdio: ["ignore", "pipe", "pipe"],
+    });
     const gone = new Promise((resolve) => program.once("exit", resolve));
     ended.push(async () => {
         program.kill();
@@ -84,20 +89,37 @@ let browser = null;
 /** Opens a page; `options` are those of Playwright's contexts. A garment is waited for, unless `wait` is false. */
 async function open(address, { wait = true, context = null, address: _, ...options } = {}) {
     if (!browser) {
-        const args = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-            "--disable-component-update", "--disable-sync"];
+        const args = [
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-quic",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+        ];
         browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args });
         ended.push(() => browser.close());
     }
-    const own = context ?? await browser.newContext({
-        viewport: { width: 1280, height: 800 }, locale: "en-GB", colorScheme: "light", reducedMotion: "reduce", ...options,
-    });
+    const own =
+        context ??
+        (await browser.newContext({
+            viewport: { width: 1280, height: 800 },
+            locale: "en-GB",
+            colorScheme: "light",
+            reducedMotion: "reduce",
+            ...options,
+        }));
     const page = await own.newPage();
     page.setDefaultTimeout(20_000);
     const origin = new URL(address).origin;
     page.told = { errors: [], outside: [] };
-    page.on("console", (message) => message.type() === "error"
-        && page.told.errors.push(`${message.text()} ${message.location().url}`));
+    page.on(
+        "console",
+        (message) =>
+            message.type() === "error" &&
+            page.told.errors.push(`${message.text()} ${message.location().url}`),
+    );
     page.on("pageerror", (error) => page.told.errors.push(String(error)));
     page.on("request", (request) => {
         const url = request.url();
@@ -137,16 +159,24 @@ export async function settled(page) {
         if (run.state === "failed") assert.fail(`the run failed: ${run.error?.message}`);
         return (run.state === "done" || (run.kind === "full" && run.state === "running")) && now;
     });
-    await page.waitForFunction(() => /\d/.test(document.querySelector("#garment canvas")?.getAttribute("aria-label") ?? ""),
-        null, { timeout: RUN });
+    await page.waitForFunction(
+        () => /\d/.test(document.querySelector("#garment canvas")?.getAttribute("aria-label") ?? ""),
+        null,
+        { timeout: RUN },
+    );
     return state;
 }
 
 /** Waits until nothing runs any more: the draft and the full run that follows it. */
-export const idle = (page) => until("the end of the runs", async () => {
-    const { run } = await stateOf(page);
-    return run.kind === "full" && run.state !== "running";
-}, 2 * RUN);
+export const idle = (page) =>
+    until(
+        "the end of the runs",
+        async () => {
+            const { run } = await stateOf(page);
+            return run.kind === "full" && run.state !== "running";
+        },
+        2 * RUN,
+    );
 
 /** Does what makes one edit, and waits until the program has it; gives the state after it. */
 export async function change(page, act) {
@@ -154,15 +184,23 @@ export async function change(page, act) {
     const before = project.edit;
     page.told.ranBefore = run.number;
     await act();
-    return until("an edit", async () => {
-        const state = await stateOf(page);
-        return state.project.edit > before && state;
-    }, 20_000);
+    return until(
+        "an edit",
+        async () => {
+            const state = await stateOf(page);
+            return state.project.edit > before && state;
+        },
+        20_000,
+    );
 }
 
 /** The line that says what happened. */
-export const said = (page, pattern, ms = RUN) => page.waitForFunction(
-    (source) => new RegExp(source).test(document.getElementById("status").textContent), pattern.source, { timeout: ms });
+export const said = (page, pattern, ms = RUN) =>
+    page.waitForFunction(
+        (source) => new RegExp(source).test(document.getElementById("status").textContent),
+        pattern.source,
+        { timeout: ms },
+    );
 
 /** No complaint of the browser, no request to anywhere else. */
 export function quiet(page) {
@@ -173,8 +211,11 @@ export function quiet(page) {
 /** Findings of axe-core that are serious or critical. */
 export async function findings(page) {
     await page.evaluate(AXE);
-    const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ["violations"] }));
-    return violations.filter(({ impact }) => ["serious", "critical"].includes(impact))
+    const { violations } = await page.evaluate(() =>
+        globalThis.axe.run(document, { resultTypes: ["violations"] }),
+    );
+    return violations
+        .filter(({ impact }) => ["serious", "critical"].includes(impact))
         .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`);
 }
 
@@ -201,9 +242,14 @@ export async function cuttable(address) {
         if (!open) return from.destroy();
         const on = net.connect(to, "127.0.0.1");
         const names = [`127.0.0.1:${relay.address().port}`, `127.0.0.1:${to}`];
-        from.on("data", (bytes) => on.write(Buffer.from(bytes.toString("latin1").replaceAll(...names), "latin1")));
+        from.on("data", (bytes) =>
+            on.write(Buffer.from(bytes.toString("latin1").replaceAll(...names), "latin1")),
+        );
         on.pipe(from);
-        for (const [a, b] of [[from, on], [on, from]]) {
+        for (const [a, b] of [
+            [from, on],
+            [on, from],
+        ]) {
             pipes.add(a);
             a.on("error", () => {});
             a.on("close", () => {
