@@ -116,7 +116,7 @@ fn a_vest_is_shown_with_its_pattern_and_its_garment_and_what_an_edit_moved() {
     assert!(outline["points"].as_array().unwrap().iter().all(inside), "pixels of the photo");
     let landmarks = photo["landmarks"].as_array().unwrap();
     assert!(
-        landmarks.iter().any(|l| l["name"] == "side_left/hem"
+        landmarks.iter().any(|l| l["name"] == "hem_left"
             || l["name"] == "hem/side_left"
             || l["name"] == "side_right/hem"),
         "{landmarks:#?}"

@@ -1,6 +1,5 @@
 //! What the runs have made, for all panes.
 
-use super::of_panel;
 use super::pattern::{pieces_of_outlines, pieces_of_pattern, seams_of_pattern, seams_of_plan};
 use crate::live::shown::ShownArtifacts;
 use serde_json::{Value, json};
@@ -50,25 +49,17 @@ fn photo_json(name: &str, photo: &Photo, shown: &ShownArtifacts, given: &BTreeSe
     })
 }
 
-/// The corners at which named edges meet, `neck/shoulder_left`, in the pixels of a photo. One is
-/// given where the text names it, for another photo than the front behind the photo's name.
+/// The landmarks of the garment in a photo, in its pixels. One is given where the text names it,
+/// for another photo than the front behind the photo's name.
 fn landmarks(photo: &str, shown: &ShownArtifacts, given: &BTreeSet<String>) -> Vec<Value> {
-    let mut all = Vec::new();
-    for (panel, outline) in &shown.outlines {
-        if of_panel(&shown.photos, panel).map(|(name, _)| name) != Some(photo) {
-            continue;
-        }
-        for (k, edge) in outline.edges.iter().enumerate() {
-            let before = &outline.edges[(k + outline.edges.len() - 1) % outline.edges.len()];
-            if let Some(px) = pixel(outline, edge.start) {
-                let name = format!("{}/{}", before.name, edge.name);
-                let name = if panel == photo { name } else { format!("{panel}: {name}") };
-                let said = if photo == FRONT { name.clone() } else { format!("{photo}.{name}") };
-                all.push(json!({ "name": name, "x": px.x, "y": px.y, "given": given.contains(&said) }));
-            }
-        }
-    }
-    all
+    let all =
+        toile_pattern::style::landmarks(shown.outlines.iter().map(|(name, o)| (name.as_str(), o.as_ref())));
+    let of_photo = all.into_iter().filter(|l| l.photo == photo);
+    let told = |l: toile_pattern::style::PhotoLandmark| {
+        let said = if photo == FRONT { l.name.clone() } else { format!("{photo}.{}", l.name) };
+        json!({ "name": l.name, "x": l.place.x, "y": l.place.y, "given": given.contains(&said) })
+    };
+    of_photo.map(told).collect()
 }
 
 /// Where a point of an outline lies in its photo.
