@@ -4,24 +4,18 @@ use crate::live::shown::ShownArtifacts;
 use crate::project::text::BodyStage;
 use serde_json::{Value, json};
 use toile_core::Length;
+use toile_core::param::ron_options;
 
 /// Parameters that are measures, and how ISO 8559-1 calls them.
 const MEASURES: [(&str, &str); 8] = [
-    ("height", "5.1.1 height"),
-    ("bust", "5.3.4 bust girth"),
-    ("waist", "5.3.10 waist girth"),
-    ("hip", "5.3.13 hip girth"),
+    ("height", "stature"),
+    ("bust", "bust girth"),
+    ("waist", "waist girth"),
+    ("hip", "hip girth"),
     ("shoulder_width", "shoulder width"),
     ("neck", "neck girth"),
     ("arm", "arm length"),
     ("inseam", "inside leg length"),
-];
-
-/// Sizes that a mannequin of no stated figure takes; a test tries each.
-pub(crate) const SIZES: [&str; 30] = [
-    "XS", "S", "M", "L", "XL", "XXL", "EU 32", "EU 34", "EU 36", "EU 38", "EU 40", "EU 42", "EU 44", "EU 46",
-    "EU 48", "EU 50", "EU 52", "EU 54", "EU 86", "EU 92", "EU 98", "EU 104", "EU 110", "EU 116", "EU 122",
-    "EU 128", "EU 134", "EU 140", "EU 146", "EU 152",
 ];
 
 /// The measures of the text's body: as the text gives them, else as the last run made it.
@@ -47,7 +41,8 @@ pub(crate) fn measures(stage: Option<&BodyStage>, shown: &ShownArtifacts) -> Val
             })
         })
     };
-    let sizes: &[&str] = if takes("size").is_some() { &SIZES } else { &[] };
+    let figure = stage.given.get("figure").and_then(|text| ron_options().from_str(text).ok().flatten());
+    let sizes = takes("size").map_or_else(Vec::new, |_| toile_body::size_names(figure));
     json!({
         "stage": stage.name,
         "sizes": sizes,
