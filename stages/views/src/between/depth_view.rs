@@ -4,9 +4,8 @@ use super::orbit::OrbitCameras;
 use super::photos::{pair, view};
 use super::sweep::{SweepPlanes, depths};
 use crate::panorama::Lens;
-use crate::picture::{GreyPlane, cubic};
+use crate::picture::{GreyPlane, by_rows, cubic};
 use image::RgbImage;
-use rayon::prelude::*;
 use toile_core::prelude::*;
 
 /// Depth is found on photos reduced to this length, px.
@@ -170,9 +169,8 @@ impl<'a> DepthScene<'a> {
         cx.figure("one_photo_alone", share(alone), "share of pixels");
         cx.figure("unseen", share(places.iter().filter(|p| p.is_none()).count()), "share of pixels");
         let depths = filled(&places, w);
-        cx.check()?;
         let colour = |k: usize| self.colour([(k % w) as f64, (k / w) as f64], f64::from(depths[k]), at);
-        Ok((0..w * h).into_par_iter().map(colour).collect())
+        by_rows(w, h, cx, colour)
     }
 
     /// Lays a pixel of a photo where it is in the view: what both agree on before what one alone

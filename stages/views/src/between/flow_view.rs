@@ -2,9 +2,8 @@
 
 use super::dense::{DenseMotion, dense};
 use super::photos::{pair, view};
-use crate::picture::cubic;
+use crate::picture::{by_rows, cubic};
 use image::RgbImage;
-use rayon::prelude::*;
 use toile_core::prelude::*;
 
 /// A way there and back that ends farther away than this is none: the pixel is hidden in the other
@@ -66,8 +65,7 @@ fn between(
     let mut field: Vec<Option<MovedPixel>> = vec![None; w * h];
     // Of what one photo alone shows, that of the nearer one counts first.
     for side in if at <= 0.5 { [0, 1] } else { [1, 0] } {
-        cx.check()?;
-        splat(photos, motions, side, at, &mut field, w);
+        splat(photos, motions, side, at, &mut field, w, cx)?;
     }
     let mut hidden = 0usize;
     field.iter().flatten().for_each(|m| hidden += usize::from(m.shown != [true; 2]));
@@ -84,7 +82,7 @@ fn between(
         let b = of(1, 1.0 - at).filter(|_| m.shown[1]).map(|c| (c, at as f32));
         mixed(a, b).or_else(|| of(0, 0.0)).unwrap_or_default()
     };
-    Ok((0..w * h).into_par_iter().map(colour).collect())
+    by_rows(w, h, cx, colour)
 }
 
 /// The weighted mean of what there is; where the place is that of a photo, that one alone counts.
@@ -105,9 +103,13 @@ fn splat(
     at: f64,
     field: &mut [Option<MovedPixel>],
     w: usize,
-) {
+    cx: &Context,
+) -> Result<(), StageError> {
     let share = if side == 0 { at } else { 1.0 - at };
     for (k, v) in motions[side].vectors.iter().enumerate() {
+        if k % w == 0 {
+            cx.check()?;
+        }
         let (x, y) = ((k % w) as f64, (k / w) as f64);
         let (ox, oy) = (x + f64::from(v[0]), y + f64::from(v[1]));
         let back = motions[1 - side].near(ox, oy);
@@ -137,6 +139,7 @@ fn splat(
             }
         }
     }
+    Ok(())
 }
 
 /// What no photo's pixel came to takes the motion beside it.

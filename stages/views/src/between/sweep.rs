@@ -7,7 +7,7 @@
 //! times planes times eight. Limit: photos are reduced to 640 px, so depth is no finer than that.
 
 use super::orbit::OrbitCameras;
-use crate::picture::GreyPlane;
+use crate::picture::{GreyPlane, by_rows};
 use rayon::prelude::*;
 use toile_core::{Context, StageError};
 
@@ -68,9 +68,9 @@ pub(super) fn depths(
         };
         (planes.first + planes.step * (k as f64 + part)) as f32
     };
-    let raw: Vec<f32> = sums.par_chunks(planes.count).map(best).collect();
-    cx.check()?;
-    Ok(median(&raw, a.width))
+    let of_pixel = |k: usize| best(&sums[k * planes.count..(k + 1) * planes.count]);
+    let raw = by_rows(a.width, a.height, cx, of_pixel)?;
+    median(&raw, a.width, cx)
 }
 
 /// The cost of each pixel on each plane.
@@ -82,8 +82,7 @@ fn costs(
     planes: SweepPlanes,
     cx: &Context,
 ) -> Result<Vec<u16>, StageError> {
-    let (of_a, of_b) = (census(a), census(b));
-    cx.check()?;
+    let (of_a, of_b) = (census(a, cx)?, census(b, cx)?);
     let pixel = |k: usize| {
         let place = [(k % a.width) as f64, (k / a.width) as f64];
         let (of_a, level) = (of_a[k], a.levels[k]);
@@ -107,7 +106,7 @@ fn costs(
 }
 
 /// Which of the pixels of the 5 x 5 around each are darker than it.
-fn census(plane: &GreyPlane) -> Vec<u32> {
+fn census(plane: &GreyPlane, cx: &Context) -> Result<Vec<u32>, StageError> {
     let at = |x: i64, y: i64| {
         let (x, y) = (x.clamp(0, plane.width as i64 - 1), y.clamp(0, plane.height as i64 - 1));
         plane.levels[y as usize * plane.width + x as usize]
@@ -117,7 +116,7 @@ fn census(plane: &GreyPlane) -> Vec<u32> {
         let level = plane.levels[k];
         (0..25).fold(0u32, |bits, n| bits << 1 | u32::from(at(x + n % 5 - 2, y + n / 5 - 2) < level))
     };
-    (0..plane.width * plane.height).into_par_iter().map(one).collect()
+    by_rows(plane.width, plane.height, cx, one)
 }
 
 /// Adds the costs summed along one path.
@@ -178,7 +177,7 @@ fn step(before: &[u16], own: &[u16], jump: u16, to: &mut [u16]) {
 }
 
 /// The median of the 3 x 3 around each.
-fn median(of: &[f32], w: usize) -> Vec<f32> {
+fn median(of: &[f32], w: usize, cx: &Context) -> Result<Vec<f32>, StageError> {
     let h = of.len() / w.max(1);
     let one = |k: usize| {
         let (x, y) = (k % w, k / w);
@@ -189,5 +188,5 @@ fn median(of: &[f32], w: usize) -> Vec<f32> {
         around.sort_by(f32::total_cmp);
         around[around.len() / 2]
     };
-    (0..of.len()).into_par_iter().map(one).collect()
+    by_rows(w, h, cx, one)
 }
