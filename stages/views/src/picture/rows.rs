@@ -29,6 +29,7 @@ pub(crate) fn by_rows<T: Send>(
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use toile_core::Cancel;
 
     #[test]
     fn pixels_are_counted_from_the_top_left_and_a_stopped_run_gives_none() {
