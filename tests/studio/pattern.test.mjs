@@ -76,6 +76,7 @@ test("a seam is unpicked, and its edges are sewn by two clicks", async () => {
     await said(page, /front\.side_left: now click/);
     const sewn = await change(page, () => click("back.side_left"));
     assert.match(sewn.text, /Sew\(a: "front\.side_left", b: "back\.side_left"\)/);
+    await settled(page);
     await until("the seam again", async () => (await seams()) === all);
 });
 

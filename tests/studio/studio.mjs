@@ -180,18 +180,19 @@ export const idle = (page) =>
 
 /** Does what makes one edit, and waits until the program has it; gives the state after it. */
 export async function change(page, act) {
-    const { project, run } = await stateOf(page);
-    const before = project.edit;
-    page.told.ranBefore = run.number;
+    const before = (await stateOf(page)).project.edit;
     await act();
-    return until(
+    const state = await until(
         "an edit",
         async () => {
-            const state = await stateOf(page);
-            return state.project.edit > before && state;
+            const now = await stateOf(page);
+            return now.project.edit > before && now;
         },
         20_000,
     );
+    // An edit stops the run before it: what has a higher number answers it.
+    page.told.ranBefore = state.run.number;
+    return state;
 }
 
 /** The line that says what happened. */

@@ -161,7 +161,10 @@ export function mountInspector(root) {
         if (!found) return replace(root);
         const piece = found.pieces.find((p) => p.name === chosen.piece);
         const edge = chosen.edge && piece?.edges.find((e) => `${piece.name}.${e.name}` === chosen.edge);
-        const seam = found.seams.find((s) => s.name === chosen.seam);
+        // A seam that is sewn anew while its edge is chosen has another name.
+        const seam =
+            found.seams.find((s) => s.name === chosen.seam) ??
+            found.seams.find((s) => chosen.edge && s.sides.flatMap(names).includes(chosen.edge));
         if (!piece) return replace(root, seamList(found.seams));
         const corner = chosen.corner !== undefined && piece.edges[chosen.corner];
         return replace(
