@@ -50,6 +50,21 @@ fn is_done(state: &Value, kind: &str) -> bool {
 }
 
 #[test]
+fn the_draft_reads_a_drawing_whose_reader_gives_a_file_as_well() {
+    let dir = tempfile::tempdir().unwrap();
+    let drawing = "<svg xmlns='http://www.w3.org/2000/svg' width='30cm' height='40cm' viewBox='0 0 300 400'>\
+        <path id='panel' d='M 10 10 H 290 V 390 H 10 Z'/></svg>";
+    std::fs::write(dir.path().join("panel.svg"), drawing).unwrap();
+    let text = "(name: \"drawing\", pattern: SvgPattern(file: \"panel.svg\"), stages: [GridMesher(edge: \"40 mm\")])";
+    std::fs::write(dir.path().join("pipeline.ron"), text).unwrap();
+    let served = Served::new(dir.path(), true);
+    let state = served.client.wait("the first run", |s| is_done(s, "full"));
+    assert_eq!(stage(&state, "GridMesher")["state"], "done");
+    let view = served.client.get("/api/view").json();
+    assert_eq!(view["pattern"]["pieces"][0]["name"], "panel");
+}
+
+#[test]
 fn an_opened_file_is_run_and_its_photos_are_shown() {
     let dir = folder(MASKS);
     let served = Served::new(dir.path(), true);

@@ -10,13 +10,19 @@ const pattern = page.getByRole("region", { name: "Pattern" });
 const edge = (name) => pattern.locator(`.reach[data-edge="${name}"]`);
 const seams = async () => Number(/\d+/.exec(await pattern.getByText(/^Seams: /).textContent())[0]);
 
-/** Clicks on an edge: its middle, since the box of a curve is not the curve. */
+/** Clicks on an edge: its middle, since the box of a curve is not the curve; once the drawing stands still. */
 async function click(name) {
-    const [x, y] = await edge(name).evaluate((path) => {
-        const { x, y } = path
-            .getPointAtLength(path.getTotalLength() * 0.4)
-            .matrixTransform(path.getScreenCTM());
-        return [x, y];
+    let at = "";
+    const [x, y] = await until("a drawing that stands still", async () => {
+        const place = await edge(name).evaluate((path) => {
+            const { x, y } = path
+                .getPointAtLength(path.getTotalLength() * 0.4)
+                .matrixTransform(path.getScreenCTM());
+            return [x, y];
+        });
+        const stands = place.join() === at && place;
+        at = place.join();
+        return stands;
     });
     await page.mouse.click(x, y);
 }

@@ -7,6 +7,7 @@ import {
     DoubleSide,
     Mesh,
     MeshLambertMaterial,
+    RepeatWrapping,
     SRGBColorSpace,
     TextureLoader,
 } from "../vendor/three.module.min.js";
@@ -72,6 +73,8 @@ export function makeCloth(world, draw) {
             loader.load(`/api/texture/${n}?v=${version}`, (texture) => {
                 texture.colorSpace = SRGBColorSpace;
                 texture.flipY = false;
+                // Woven cloth repeats.
+                texture.wrapS = texture.wrapT = RepeatWrapping;
                 texture.anisotropy = 4;
                 material.map?.dispose();
                 material.map = texture;

@@ -40,7 +40,9 @@ function told(run, words) {
         moved === null || moved === undefined
             ? t("run.done", { took })
             : t("run.moved", { mm: mm(moved / 1000, moved < 10 ? 1 : 0), took });
-    return say(what + did + (run.kind === "draft" ? t("run.asDraft") : ""), "done");
+    if (run.kind === "draft") return say(what + did + t("run.asDraft"), "done");
+    const missed = (run.shortfalls ?? []).map(({ message }) => message);
+    return missed.length === 0 ? say(what + did, "done") : say(what + missed.join("; "), "error");
 }
 
 const tellRun = whenChanged((number, state, kind, mmMoved, words) => {

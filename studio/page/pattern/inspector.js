@@ -175,7 +175,7 @@ export function mountInspector(root) {
             !edge && !corner && piecePart(piece),
         );
     });
-    watch(["view", "chosen", "state"], () => {
+    watch(["view", "chosen", "state", "pending"], () => {
         if (store.pending > 0) return;
         const { piece, edge, corner, seam } = selection.chosen;
         draw(pattern(), { piece, edge, corner, seam });

@@ -91,9 +91,11 @@ fn coarser(pipeline: &Pipeline, node: &Node) -> Option<Override> {
     Some(Override { path, value: format!("\"{}\"", Length::m(longer)) })
 }
 
-/// Takes the stages out that give files; nothing reads from them.
+/// Takes the stages out that give files and nothing else. A reader that writes what it proposes
+/// beside its pattern stays.
 fn leave_out_writers(pipeline: &mut Pipeline) {
-    let writes = |n: &Node| n.card.outputs.iter().any(|o| o.kind == OutputFiles::KIND);
+    let gives_files = |n: &Node| n.card.outputs.iter().all(|o| o.kind == OutputFiles::KIND);
+    let writes = |n: &Node| !n.card.outputs.is_empty() && gives_files(n);
     let mut places = Vec::new();
     let mut next = 0;
     for node in &pipeline.nodes {
