@@ -80,8 +80,10 @@ test("a writer is added and removed", async () => {
 
 test("the graph shows every stage, and chooses one", async () => {
     await page.getByRole("button", { name: "As a graph" }).click();
-    const { stages } = await stateOf(page);
-    assert.equal(await page.locator("#stages .node").count(), stages.length);
+    await until("a node a stage", async () => {
+        const { stages } = await stateOf(page);
+        return (await page.locator("#stages .node").count()) === stages.length;
+    });
     await page.locator("#stages .node", { hasText: "Canny" }).click();
     await page.locator("#stages h3", { hasText: "Canny" }).waitFor();
     await page.getByRole("button", { name: "As a graph" }).click();

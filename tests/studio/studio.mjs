@@ -149,13 +149,17 @@ export async function until(what, holds, ms = RUN) {
     }
 }
 
+/** A run of results that are all known is over before one looks; so long after an edit no other comes, ms. */
+const AT_ONCE = 2000;
+
 /** Waits until a garment stands: the present file's draft is done, and the page shows it. */
 export async function settled(page) {
     const state = await until("a garment", async () => {
         const now = await stateOf(page);
         const { run } = now;
         // The run that answers an edit begins a moment after it.
-        if (run.number <= (page.told.ranBefore ?? -1)) return false;
+        const answers = run.number > (page.told.ranBefore ?? -1);
+        if (!answers && Date.now() - page.told.editedAt < AT_ONCE) return false;
         if (run.state === "failed") assert.fail(`the run failed: ${run.error?.message}`);
         return (run.state === "done" || (run.kind === "full" && run.state === "running")) && now;
     });
@@ -192,6 +196,7 @@ export async function change(page, act) {
     );
     // An edit stops the run before it: what has a higher number answers it.
     page.told.ranBefore = state.run.number;
+    page.told.editedAt = Date.now();
     return state;
 }
 
