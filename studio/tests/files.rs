@@ -67,6 +67,7 @@ fn a_project_begins_with_a_sample_a_photo_or_a_pattern() {
         (json!({ "sample": "trousers" }), "Block", None),
         (json!({ "sample": "shirt_pattern" }), "GarmentCode", None),
         (json!({ "photo": "tee.jpg", "width": "80 cm" }), "Neckline", Some("tee.jpg")),
+        (json!({ "photo": "tee.jpg" }), "Neckline", Some("tee.jpg")),
         (json!({ "pattern": "mine.json" }), "GarmentCode", Some("mine.json")),
     ] {
         let dir = tempfile::tempdir().unwrap();
@@ -88,7 +89,10 @@ fn a_project_begins_with_a_sample_a_photo_or_a_pattern() {
         let state = served.client.state();
         assert_eq!((&state["faults"], &state["project"]["saved"]), (&json!([]), &json!(true)), "{with}");
         assert!(state["stages"].as_array().unwrap().iter().any(|s| s["name"] == stage), "{with}: {state:#}");
-        assert!(state["text"].as_str().unwrap().contains("// "), "comments stay");
+        let text = state["text"].as_str().unwrap();
+        assert!(text.contains("// "), "comments stay");
+        let by_card = text.contains("\"front\": (scale: BankCard, file: \"tee.jpg\")");
+        assert_eq!(by_card, with == json!({ "photo": "tee.jpg" }), "{text}");
         let again = served.client.post("/api/begin", &with).refusal();
         assert_eq!(again, (409, "exists".to_owned(), "the project has a pipeline already".to_owned()));
     }

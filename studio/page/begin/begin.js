@@ -12,23 +12,15 @@ const SAMPLES = ["vest", "tshirt", "skirt", "trousers", "shirt_pattern"];
 
 let file = null;
 
-/** `changes` are made to the new file. */
-async function begin(what, changes = []) {
+async function begin(what) {
     sayWord("begin.busy");
     try {
-        const { edit } = await postJson("/api/begin", what);
-        if (changes.length > 0) await postJson("/api/edit", { edit, words: t("edit.begin"), changes });
+        await postJson("/api/begin", what);
         sayWord("begin.done");
     } catch (error) {
         sayError(error);
     }
 }
-
-/** The photo's scale is that of a card in it, in the place of a width. */
-const BY_CARD = [
-    { set: { path: "photos.front.scale", value: "BankCard" } },
-    { remove: "photos.front.width" },
-];
 
 async function take(chosen, root) {
     if (!chosen) return;
@@ -92,7 +84,7 @@ function askWidth(root) {
         try {
             const photo = await upload(file);
             const measured = byWidth.checked ? `${Number(width.value)} cm` : null;
-            await begin({ photo, width: measured }, measured ? [] : BY_CARD);
+            await begin({ photo, width: measured });
         } catch (error) {
             sayError(error);
         }

@@ -86,7 +86,7 @@ export const en = {
     "trade.take": "Take", "trade.takeNamed": "Take {name}", "trade.stands": "stands", "trade.stale": "for an earlier pipeline",
     "files.none": "Nothing is written yet. A full run writes here.", "files.where": "In {folder}",
 
-    "edit.begin": "scale by a bank card", "edit.landmark": "move {name}", "edit.landmarkBack": "give back {name}", "edit.stroke.garment": "mark garment", "edit.stroke.ground": "mark ground",
+    "edit.landmark": "move {name}", "edit.landmarkBack": "give back {name}", "edit.stroke.garment": "mark garment", "edit.stroke.ground": "mark ground",
     "edit.strokesClear": "clear marks", "edit.width": "width {width}", "edit.scale": "scale by {object}", "edit.kind": "kind {kind}",
     "edit.corner": "move corner {k} of {piece}", "edit.edge": "move {edge}", "edit.length": "{edge} {length} long", "edit.dart": "dart in {edge}",
     "edit.mirror": "mirror {piece}", "edit.sew": "sew {a} to {b}", "edit.unpick": "unpick {seam}", "edit.reverse": "turn {seam} round",

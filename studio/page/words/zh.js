@@ -90,7 +90,7 @@ export const zh = {
     "trade.take": "采用", "trade.takeNamed": "采用 {name}", "trade.stands": "有效", "trade.stale": "针对较早的流程",
     "files.none": "尚无文件。完整运行后写入这里。", "files.where": "位于 {folder}",
 
-    "edit.begin": "以银行卡定比例", "edit.landmark": "移动 {name}", "edit.landmarkBack": "恢复 {name}", "edit.stroke.garment": "标记服装", "edit.stroke.ground": "标记背景",
+    "edit.landmark": "移动 {name}", "edit.landmarkBack": "恢复 {name}", "edit.stroke.garment": "标记服装", "edit.stroke.ground": "标记背景",
     "edit.strokesClear": "清除标记", "edit.width": "宽度 {width}", "edit.scale": "比例依据 {object}", "edit.kind": "种类 {kind}",
     "edit.corner": "移动 {piece} 的角点 {k}", "edit.edge": "移动 {edge}", "edit.length": "{edge} 长 {length}", "edit.dart": "{edge} 的省道",
     "edit.mirror": "镜像 {piece}", "edit.sew": "缝合 {a} 与 {b}", "edit.unpick": "拆开 {seam}", "edit.reverse": "反转 {seam}",

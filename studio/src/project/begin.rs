@@ -17,7 +17,7 @@ pub(crate) struct BeginWith {
     /// A photo of a garment that lies flat, in the project's folder.
     #[serde(default)]
     pub(crate) photo: Option<String>,
-    /// The garment's real width in it.
+    /// The garment's real width in it; without one a bank card in the photo gives the scale.
     #[serde(default)]
     pub(crate) width: Option<String>,
     /// A pattern file in the project's folder.
@@ -120,14 +120,19 @@ fn sample(name: &str) -> Result<Beginning, StudioFault> {
     Ok(Beginning { text: sample.text.replace(sample.folder, ""), inputs: sample.inputs.to_vec() })
 }
 
-/// A photo without a width takes the one that the template gives a T-shirt: a start that is seen,
-/// and changed.
+/// A photo without a width has a bank card in it: the template's width is that of its own sample.
 fn of_photo(photo: &str, width: Option<&str>, registry: &Registry) -> Result<Beginning, StudioFault> {
     check_name(photo)?;
     let mut edits = vec![set("photos.front.file", ron_text(&photo))];
-    if let Some(width) = width {
-        let length: Length = width.parse().map_err(StudioFault::malformed)?;
-        edits.push(set("photos.front.width", ron_text(&length)));
+    match width {
+        Some(width) => {
+            let length: Length = width.parse().map_err(StudioFault::malformed)?;
+            edits.push(set("photos.front.width", ron_text(&length)));
+        }
+        None => {
+            edits.push(set("photos.front.scale", "BankCard".to_owned()));
+            edits.push(PipelineEdit::Remove { path: "photos.front.width".to_owned() });
+        }
     }
     made(PHOTO, registry, &edits)
 }
