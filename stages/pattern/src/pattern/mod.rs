@@ -21,7 +21,9 @@ mod unit;
 pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
 pub use outfit::Outfit;
+pub use propose::{ProposedSeam, proposed_seams};
 pub use seamly::SeamlyPattern;
+pub use sidecar::seams_file;
 pub use svg::SvgPattern;
 pub use unit::DrawingUnit;
 

@@ -41,8 +41,20 @@ const LEAST: f64 = 0.5;
 /// Sides whose lengths differ by more than this share are gathered.
 const GATHERED: f64 = 0.1;
 
-/// Seams, the surest first, each with its confidence and the reasons for it.
-pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
+/// A seam that is proposed; [`proposed_seams`] gives them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposedSeam {
+    /// The seam, by the edges of the pieces.
+    pub seam: PatternSeam,
+    /// How likely it is right, 0.5 to 0.99.
+    pub confidence: f64,
+    /// What it was judged by: the lengths of its sides, ease, notches.
+    pub reason: String,
+}
+
+/// The seams that are proposed for pieces, the surest first; none for pieces that are larger or
+/// more than those of a garment. Seams that the pieces have already are not known to it.
+pub fn proposed_seams(pieces: &[Piece]) -> Vec<ProposedSeam> {
     let is_garment = |p: &Piece| (0..p.outer.edges.len()).all(|k| p.outer.path(k).length() <= LONGEST_EDGE);
     if !pieces.iter().all(is_garment) {
         return Vec::new();
@@ -62,7 +74,7 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
     found.extend(choose::choose(&sheet, &mut border, SHORTEST, LEAST));
     found.extend(rule::by_rule(&sheet, &mut border));
     found.sort_by(|a, b| b.sure.total_cmp(&a.sure));
-    let mut out: Vec<(PatternSeam, String)> = found.iter().map(|f| seam(f, &sheet, pieces)).collect();
+    let mut out: Vec<ProposedSeam> = found.iter().map(|f| seam(f, &sheet, pieces)).collect();
     out.extend(rings::attach(pieces, &out));
     out
 }
@@ -89,7 +101,7 @@ fn is_dart(sheet: &Sheet, [a, b]: &[Vec<usize>; 2]) -> bool {
     inwards(*a, *b) != inwards(*b, *a)
 }
 
-fn seam(found: &Found, sheet: &Sheet, pieces: &[Piece]) -> (PatternSeam, String) {
+fn seam(found: &Found, sheet: &Sheet, pieces: &[Piece]) -> ProposedSeam {
     let used = |e: &usize, reversed: bool| {
         let edge = &sheet.edges[*e];
         let piece = &pieces[edge.piece];
@@ -121,7 +133,6 @@ fn seam(found: &Found, sheet: &Sheet, pieces: &[Piece]) -> (PatternSeam, String)
         None => "",
     };
     let eased = if more > 0.01 { format!(", {:+.1} % ease", (x / y - 1.0) * 1e2) } else { String::new() };
-    let sure = found.sure.min(SURE);
-    let reason = format!("confidence {sure:.2}: {:.1} mm to {:.1} mm{eased}{notches}", x * 1e3, y * 1e3);
-    (PatternSeam { name, kind, sides }, reason)
+    let reason = format!("{:.1} mm to {:.1} mm{eased}{notches}", x * 1e3, y * 1e3);
+    ProposedSeam { seam: PatternSeam { name, kind, sides }, confidence: found.sure.min(SURE), reason }
 }

@@ -48,7 +48,7 @@ pub(super) fn sewn(
 
 /// The file of proposed seams, with a warning that says how to use it.
 fn proposed(pattern: &Pattern, told: &mut Remarks) -> OutputFiles {
-    let seams = propose::propose(&pattern.pieces);
+    let seams = propose::proposed_seams(&pattern.pieces);
     told.warnings.push(match seams.len() {
         0 => "no seams are given, and none can be proposed: nothing is sewn. Write them into a file and give it as `seams`"
             .to_owned(),
@@ -58,7 +58,7 @@ fn proposed(pattern: &Pattern, told: &mut Remarks) -> OutputFiles {
     });
     match seams.is_empty() {
         true => OutputFiles::default(),
-        false => OutputFiles::one("seams.ron", sidecar::write(&seams).into_bytes()),
+        false => OutputFiles::one("seams.ron", sidecar::seams_file(&seams).into_bytes()),
     }
 }
 

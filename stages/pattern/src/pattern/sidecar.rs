@@ -14,6 +14,7 @@
 //! its start. All sides of a seam run the same way: their starts meet, and their ends.
 
 use super::faults::PatternFault;
+use super::propose::ProposedSeam;
 use serde::Deserialize;
 use std::fmt::Write;
 use toile_core::nearest;
@@ -149,19 +150,19 @@ fn list<'n>(names: impl Iterator<Item = &'n String>) -> String {
     all[..all.len().min(MOST_NAMES)].join(", ") + &more
 }
 
-/// Seams as such a file, each with the reasons for it as a comment.
-pub(super) fn write(seams: &[(PatternSeam, String)]) -> String {
+/// Seams as such a file, each with its confidence and the reason for it as a comment.
+pub fn seams_file<'s>(seams: impl IntoIterator<Item = &'s ProposedSeam>) -> String {
     let mut out = String::from(
         "// Proposed seams. Look at each, take out what is wrong, and give this file as `seams`; nothing is sewn until then.\n\
          (\n    seams: [\n",
     );
-    for (seam, reason) in seams {
+    for ProposedSeam { seam, confidence, reason } in seams {
         let one = |u: &EdgeUse| format!("{:?}", format!("{}{}", if u.reversed { "-" } else { "" }, u.edge));
         let side = |s: &Vec<EdgeUse>| format!("[{}]", s.iter().map(one).collect::<Vec<_>>().join(", "));
         let sides = seam.sides.iter().map(side).collect::<Vec<_>>().join(", ");
         let _ = writeln!(
             out,
-            "        // {reason}\n        (name: {:?}, kind: {}, sides: [{sides}]),",
+            "        // confidence {confidence:.2}: {reason}\n        (name: {:?}, kind: {}, sides: [{sides}]),",
             seam.name,
             kind_word(seam.kind)
         );
@@ -194,10 +195,10 @@ mod tests {
             kind,
             sides: vec![vec![edge("front.right"), edge("-front.top")], vec![edge("-back.left")]],
         };
-        let seams: Vec<(PatternSeam, String)> =
-            SeamKind::all().map(|k| (seam(k), "why".to_owned())).collect();
-        let again = read(write(&seams).as_bytes(), &pieces()).unwrap();
-        assert_eq!(again, seams.into_iter().map(|(s, _)| s).collect::<Vec<_>>());
+        let proposed = |k| ProposedSeam { seam: seam(k), confidence: 0.9, reason: "why".to_owned() };
+        let seams: Vec<ProposedSeam> = SeamKind::all().map(proposed).collect();
+        let again = read(seams_file(&seams).as_bytes(), &pieces()).unwrap();
+        assert_eq!(again, seams.into_iter().map(|p| p.seam).collect::<Vec<_>>());
     }
 
     #[test]

@@ -344,7 +344,7 @@ fn all_faults_of_a_file_are_told_at_once() {
 
 /// The proposals as pairs of words, each in order.
 fn proposals(pieces: &[Piece]) -> Vec<String> {
-    let mut all: Vec<String> = propose::propose(pieces).into_iter().map(|(s, _)| s.name).collect();
+    let mut all: Vec<String> = propose::proposed_seams(pieces).into_iter().map(|p| p.seam.name).collect();
     all.sort();
     all
 }
@@ -399,7 +399,7 @@ fn nothing_is_sewn_until_the_proposals_are_given_back() {
     let stage = DxfPattern { file: "leg.dxf".into(), ..asked("M", unit) };
     let (pattern, plan, files, told) = run(dir.path(), &stage).unwrap();
     assert!(pattern.seams.is_empty() && plan.seams.is_empty() && pattern.check().is_ok());
-    let count = propose::propose(&pattern.pieces).len();
+    let count = propose::proposed_seams(&pattern.pieces).len();
     assert_eq!(
         told.last().unwrap(),
         &format!(

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use super::propose;
+use super::{ProposedSeam, proposed_seams};
 use toile_core::prelude::*;
 
 /// A piece of straight edges, `edge_0` from the first corner to the second, millimetres.
@@ -39,15 +39,16 @@ fn half(name: &str, depth: f64) -> Piece {
     )
 }
 
-fn words(found: &[(PatternSeam, String)], kind: SeamKind) -> Vec<&str> {
-    let mut all: Vec<&str> = found.iter().filter(|f| f.0.kind == kind).map(|f| f.0.name.as_str()).collect();
+fn words(found: &[ProposedSeam], kind: SeamKind) -> Vec<&str> {
+    let mut all: Vec<&str> =
+        found.iter().filter(|f| f.seam.kind == kind).map(|f| f.seam.name.as_str()).collect();
     all.sort_unstable();
     all
 }
 
 #[test]
 fn a_skirt_is_sewn_at_its_darts_and_from_front_to_back_at_its_sides() {
-    let found = propose(&[half("front", 90.0), half("back", 130.0)]);
+    let found = proposed_seams(&[half("front", 90.0), half("back", 130.0)]);
     assert_eq!(
         words(&found, SeamKind::Dart),
         [
@@ -65,10 +66,10 @@ fn a_skirt_is_sewn_at_its_darts_and_from_front_to_back_at_its_sides() {
 
 #[test]
 fn pieces_without_size_and_garments_without_pieces_are_sewn_to_nothing() {
-    assert!(propose(&[]).is_empty());
+    assert!(proposed_seams(&[]).is_empty());
     let speck = piece("speck", &[[0.0, 0.0], [0.0, 0.0], [0.0, 0.0]]);
-    let found = propose(&[speck.clone(), speck, half("front", 90.0)]);
-    assert!(found.iter().all(|(s, _)| !s.name.contains("speck")), "{found:?}");
+    let found = proposed_seams(&[speck.clone(), speck, half("front", 90.0)]);
+    assert!(found.iter().all(|p| !p.seam.name.contains("speck")), "{found:?}");
 }
 
 #[test]
@@ -77,7 +78,7 @@ fn where_an_edge_is_longer_than_a_hundred_metres_nothing_is_proposed() {
     back.outer.corners.iter_mut().for_each(|p| p.x *= 1e9);
     let curve = |at: f64| Point2::new(at * 1e9, 0.3);
     back.outer.edges[1].curve = EdgeCurve::Cubic { controls: [curve(0.3), curve(0.2)] };
-    assert!(propose(&[half("front", 90.0), back]).is_empty());
+    assert!(proposed_seams(&[half("front", 90.0), back]).is_empty());
 }
 
 #[test]
@@ -95,5 +96,5 @@ fn a_drawing_of_many_short_edges_is_answered() {
     for k in 0..2 {
         pieces.push(piece(&format!("star_{k}"), &round(48, [200.0, 120.0])));
     }
-    assert!(propose(&pieces).len() < 1_000);
+    assert!(proposed_seams(&pieces).len() < 1_000);
 }

@@ -7,6 +7,7 @@
 //! edge of a band is sewn along a ring that is no hem. Lengths differ by the ease that tailors
 //! give. Cost: rings squared. Limits: tubes of one piece; a band around an open front is not found.
 
+use super::ProposedSeam;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 
@@ -73,7 +74,7 @@ struct Ring {
 }
 
 /// Seams that attach tubes and bands to rings, the surest first.
-pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(PatternSeam, String)> {
+pub(super) fn attach(pieces: &[Piece], sewn: &[ProposedSeam]) -> Vec<ProposedSeam> {
     let rings = rings(pieces, sewn);
     let one = |&(i, k): &At| candidate(&pieces[i], k);
     let around: Vec<&Ring> =
@@ -131,7 +132,7 @@ fn fits(own: f64, other: f64, tolerance: &LengthTolerance) -> Option<f64> {
 }
 
 /// The rings of the edges that no seam takes.
-fn rings(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<Ring> {
+fn rings(pieces: &[Piece], sewn: &[ProposedSeam]) -> Vec<Ring> {
     let after = partners(pieces, sewn);
     let all = pieces.iter().enumerate().flat_map(|(i, p)| (0..p.outer.edges.len()).map(move |k| (i, k)));
     let free: BTreeSet<At> = all.filter(|at| !after.contains_key(at)).collect();
@@ -167,7 +168,7 @@ fn rings(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<Ring> {
 
 /// For every sewn edge with which a side of a seam begins, the edge with which the other side ends;
 /// none for the other sewn edges.
-fn partners(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> BTreeMap<At, Option<At>> {
+fn partners(pieces: &[Piece], sewn: &[ProposedSeam]) -> BTreeMap<At, Option<At>> {
     let at = |u: &EdgeUse| {
         let i = pieces.iter().position(|p| p.name == u.edge.panel)?;
         Some((i, pieces[i].edge_number(&u.edge.edge)?))
@@ -181,7 +182,7 @@ fn partners(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> BTreeMap<At, Op
         edges
     };
     let mut out = BTreeMap::new();
-    for (seam, _) in sewn {
+    for ProposedSeam { seam, .. } in sewn {
         let sides: Vec<Vec<At>> = seam.sides.iter().map(run).collect();
         let [a, b] = &sides[..] else { continue };
         for (one, other) in [(a, b), (b, a)] {
@@ -245,7 +246,7 @@ fn notches(pieces: &[Piece], edge: At, ring: &[At]) -> Option<f64> {
         .then(|| own.iter().map(near).sum::<f64>() / own.len() as f64)
 }
 
-fn seam(pieces: &[Piece], edge: At, ring: &[At], score: f64, c: &Candidate) -> (PatternSeam, String) {
+fn seam(pieces: &[Piece], edge: At, ring: &[At], score: f64, c: &Candidate) -> ProposedSeam {
     let used = |(i, k): At, reversed: bool| EdgeUse {
         edge: EdgeRef { panel: pieces[i].name.clone(), edge: pieces[i].outer.edges[k].name.clone() },
         reversed,
@@ -256,7 +257,7 @@ fn seam(pieces: &[Piece], edge: At, ring: &[At], score: f64, c: &Candidate) -> (
     let name = format!("{} + {}", words(&sides[0]), words(&sides[1]));
     let whole: f64 = ring.iter().map(|at| pieces[at.0].outer.path(at.1).length()).sum();
     let (x, y) = (c.length * 1e3, whole * 1e3);
-    let reason =
-        format!("confidence {score:.2}: {x:.1} mm to {y:.1} mm around, {:+.1} % ease", (x / y - 1.0) * 1e2);
-    (PatternSeam { name, kind: SeamKind::Matched, sides }, reason)
+    let reason = format!("{x:.1} mm to {y:.1} mm around, {:+.1} % ease", (x / y - 1.0) * 1e2);
+    let seam = PatternSeam { name, kind: SeamKind::Matched, sides };
+    ProposedSeam { seam, confidence: score, reason }
 }

@@ -16,7 +16,7 @@
 mod cases;
 mod fit;
 
-use super::propose;
+use super::{ProposedSeam, proposed_seams};
 use cases::{Case, cases, is_tuned};
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
@@ -149,31 +149,29 @@ fn agreeing(
     seams.iter().map(one).collect()
 }
 
-/// The confidence that a reason names.
-fn confidence(reason: &str) -> f64 {
-    let number = reason.strip_prefix("confidence ").and_then(|r| r.get(..4));
-    number.and_then(|n| n.parse().ok()).unwrap()
-}
-
 fn score(case: &Case, tally: &mut Tally, talk: bool) {
     let shapes = shapes(&case.pieces);
-    let found = propose(&case.pieces);
+    let found = proposed_seams(&case.pieces);
     let two = |s: &&PatternSeam| s.sides.len() == 2;
     let met = |s: &PatternSeam| meetings(&case.pieces, &shapes, s);
     let truth: Vec<_> = case.seams.iter().filter(two).map(met).collect();
-    let proposed: Vec<_> = found.iter().map(|(s, _)| met(s)).collect();
+    let proposed: Vec<_> = found.iter().map(|p| met(&p.seam)).collect();
     let right = agreeing(&proposed, truth.iter().flatten().copied());
     let kept = proposed.iter().zip(&right).filter(|(_, r)| **r).flat_map(|(p, _)| p.iter().copied());
     let recalled = agreeing(&truth, kept);
-    for ((seam, why), right) in found.iter().zip(&right) {
+    for (ProposedSeam { seam, confidence, reason }, right) in found.iter().zip(&right) {
         tally.proposed.add(*right);
         tally.kinds.entry(case.kind(seam)).or_default().0.add(*right);
-        let sure = confidence(why);
-        if let Some(k) = ROWS.iter().rposition(|least| sure >= *least) {
+        if let Some(k) = ROWS.iter().rposition(|least| confidence >= least) {
             tally.rows[k].add(*right);
         }
         if talk && !right {
-            println!("  wrong {} {} {}: {why}", case.kind(seam), seam.name, case.words(seam));
+            println!(
+                "  wrong {} {} {}: {confidence:.2}, {reason}",
+                case.kind(seam),
+                seam.name,
+                case.words(seam)
+            );
         }
     }
     for (seam, found) in case.seams.iter().filter(two).zip(&recalled) {

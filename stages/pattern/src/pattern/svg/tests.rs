@@ -115,14 +115,14 @@ fn parts_of_freesewing_are_unfolded_named_and_cut_as_often_as_they_say() {
 #[test]
 fn sides_shoulders_and_sleeves_are_proposed_and_no_hem() {
     let (pieces, _) = read(&tee()).unwrap();
-    let found = propose::propose(&pieces);
-    let names: Vec<&str> = found.iter().map(|(s, _)| s.name.as_str()).collect();
+    let found = propose::proposed_seams(&pieces);
+    let names: Vec<&str> = found.iter().map(|p| p.seam.name.as_str()).collect();
     assert_eq!(found.len(), 8, "{names:?}");
     for cap in ["sleeve.", "sleeve_mirrored."] {
         let into = |s: &&PatternSeam| {
             s.sides[0].len() == 1 && s.sides[0][0].edge.to_string().starts_with(cap) && s.sides[1].len() == 2
         };
-        let seam = found.iter().map(|(s, _)| s).find(into).unwrap();
+        let seam = found.iter().map(|p| &p.seam).find(into).unwrap();
         // Seen from outside, the front of a right sleeve is at its right: its cap begins at the
         // front.
         let first = &seam.sides[1][0].edge.panel;
@@ -133,7 +133,7 @@ fn sides_shoulders_and_sleeves_are_proposed_and_no_hem() {
         let low = p.outer.points().0.iter().map(|q| q.y).fold(f64::INFINITY, f64::min);
         p.path(&u.edge.edge).unwrap().points().iter().all(|q| q.y - low < 0.01)
     };
-    assert!(!found.iter().flat_map(|(s, _)| s.sides.iter().flatten()).any(hem), "{names:?}");
+    assert!(!found.iter().flat_map(|p| p.seam.sides.iter().flatten()).any(hem), "{names:?}");
 }
 
 #[test]
@@ -313,11 +313,8 @@ fn a_piece_on_two_folds_is_unfolded_at_both() {
     let area = polygon_area(&pieces[0].outer.points().0);
     assert!((area / (0.24 * PI) - 1.0).abs() < 5e-3, "{area}");
     assert!(told[0].starts_with("piece \"skirt\" is a ring when both its folds are unfolded: "), "{told:?}");
-    let seams = propose::propose(&pieces);
-    assert!(
-        seams.iter().any(|(s, why)| s.sides.len() == 2 && why.starts_with("confidence 0.99")),
-        "{seams:?}"
-    );
+    let seams = propose::proposed_seams(&pieces);
+    assert!(seams.iter().any(|s| s.seam.sides.len() == 2 && s.confidence == 0.99), "{seams:?}");
 }
 
 #[test]
@@ -622,7 +619,7 @@ proptest! {
             bytes.truncate(cut % n);
         }
         if let Ok(pieces) = of_bytes(&bytes) {
-            let _ = propose::propose(&pieces);
+            let _ = propose::proposed_seams(&pieces);
             let pattern = Pattern { name: "spoilt".into(), pieces, seams: Vec::new() };
             proptest::prop_assert_eq!(toile_core::artifact::Artifact::check(&pattern), Ok(()));
         }
