@@ -1,6 +1,6 @@
 //! What a running stage may ask of the outside world.
 
-use crate::artifact::{ArtifactType, Digest, Digester, Measure};
+use crate::artifact::{ArtifactType, Digest, Digester, Measure, Point3};
 use crate::files::MAX_FILE_BYTES;
 use crate::{ErrorCode, PortValue, Remarks, StageError, parallel};
 use std::path::{Path, PathBuf};
@@ -63,6 +63,16 @@ pub enum Event {
 pub trait Listener: Send + Sync {
     /// Takes an event of the stage `stage` (`entry` of a named set).
     fn event(&self, stage: &str, entry: &str, event: &Event);
+
+    /// Whether it wants to see now where a garment has come to. Asked after every step of a solver.
+    fn looks_on(&self) -> bool {
+        false
+    }
+
+    /// Takes the places of all vertices of the garment that the stage `stage` works on, metres.
+    fn moves(&self, stage: &str, positions: Vec<Point3>) {
+        let _ = (stage, positions);
+    }
 }
 
 /// A listener that takes no notice.
@@ -236,6 +246,14 @@ impl Context {
     pub fn progress(&self, share: f64, text: impl Into<String>) {
         let event = Event::Progress { share: share.clamp(0.0, 1.0), text: text.into() };
         self.listener.event(&self.stage, &self.entry, &event);
+    }
+
+    /// Shows where the garment has come to, to those who look on: the places of its vertices, metres,
+    /// in their order. `make` is called where somebody does.
+    pub fn moves(&self, make: impl FnOnce() -> Vec<Point3>) {
+        if self.listener.looks_on() {
+            self.listener.moves(&self.stage, make());
+        }
     }
 
     /// Reports a decision and the fact behind it: "the front is taken for a T-shirt". The note is

@@ -78,7 +78,7 @@ pub(crate) fn released(
     let mut live = Live::here(settings, scene, Some(engine_collider)).map_err(|e| unsolved(&e))?;
     let start = live.positions();
     let (mut moving, mut steps) = (1.0_f64, 0);
-    let mut watch = |report: &LevelReport| {
+    let mut watch = |report: &LevelReport, _: &dyn Fn() -> Vec<Vector3<f64>>| {
         let step = report.outcome;
         steps = step.steps;
         if step.dt >= LONG {

@@ -40,7 +40,7 @@ fn tell(name: &str, solved: Solved) -> Result<Equilibrium, StaticsError> {
 }
 
 fn solve(settings: StaticEquilibrium, scene: &Scene) -> Solved {
-    settings.solve(scene, &mut |_| ControlFlow::Continue(()))
+    settings.solve(scene, &mut |_, _| ControlFlow::Continue(()))
 }
 
 /// A skirt with friction between its yarns, as solved, from there, and after changes of its fabric.
@@ -55,7 +55,7 @@ fn skirt(plain: StaticEquilibrium) -> Result<(), StaticsError> {
         live.change(|s| s.material.density *= 1.0 + 0.1 * f64::from(k))?;
         live.follow(2)?;
     }
-    tell("skirt, changed", live.settle(&mut |_| ControlFlow::Continue(())))?;
+    tell("skirt, changed", live.settle(&mut |_, _| ControlFlow::Continue(())))?;
     scene.positions.clone_from(&first.positions);
     scene.held = first.held();
     tell("skirt, from here", solve(StaticEquilibrium { from_here: true, ..plain }, &scene))?;
@@ -74,8 +74,9 @@ fn lifted(graded: StaticEquilibrium) -> Result<(), StaticsError> {
     let settings = StaticEquilibrium { sew_through: true, ..graded };
     let around: [&dyn CollisionSurface; 2] = [&low, &middle];
     let collider = Some(Collider { surface: &body, friction });
-    let go_on = &mut |_: &_| ControlFlow::Continue(());
-    tell("lifted", settings.solve_around(&scene, collider, &around, &Stopper::default(), go_on)).map(drop)
+    let lifted = settings
+        .solve_around(&scene, collider, &around, &Stopper::default(), &mut |_, _| ControlFlow::Continue(()));
+    tell("lifted", lifted).map(drop)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

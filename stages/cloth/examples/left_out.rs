@@ -10,7 +10,7 @@ use toile_cloth::statics::drive::solve::StaticEquilibrium;
 fn main() -> Result<(), Box<dyn Error>> {
     let cells: u32 = std::env::args().nth(1).map_or(Ok(24), |n| n.parse())?;
     let scene = generate::hang(cells);
-    let rested = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(()))?;
+    let rested = StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Continue(()))?;
     // All bits of the result, so that the results of two builds can be compared exactly.
     let bits = rested.positions.iter().flat_map(|p| [p.x, p.y, p.z]).map(f64::to_bits);
     let digest = bits.fold(0xcbf2_9ce4_8422_2325_u64, |d, b| (d ^ b).wrapping_mul(0x0100_0000_01b3));

@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let states: usize = args.get(1).map_or(Ok(120), |n| n.parse())?;
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
     let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
-    let state = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(()))?;
+    let state = StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Continue(()))?;
     let (cloth, rub) = (scene.material.clone(), collider.map_or(0.0, |w| w.friction));
     let mut live = Live::new(StaticEquilibrium::default(), scene.clone(), collider, &state)?;
     let (mut slowest, mut residual, mut speed) = (0.0f64, 0.0f64, 0.0f64);
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         slowest = slowest.max(frame.elapsed().as_secs_f64());
     }
     let seconds = clock.elapsed().as_secs_f64();
-    let settled = live.settle(&mut |_| ControlFlow::Continue(()))?;
+    let settled = live.settle(&mut |_, _| ControlFlow::Continue(()))?;
     let report = &settled.levels[0];
     println!(
         "{}",

@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         bending_continuation: args.iter().any(|a| a == "--continuation"),
         ..StaticEquilibrium::default()
     }
-    .solve(&scene, &mut |level| {
+    .solve(&scene, &mut |level, _| {
         steps += 1;
         if trace {
             let o = &level.outcome;

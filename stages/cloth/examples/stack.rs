@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings =
         StaticEquilibrium { budget: Duration::from_secs(seconds.parse()?), ..StaticEquilibrium::default() };
     let (clock, trace, mut steps) = (Instant::now(), options.iter().any(|o| o == "--trace"), 0);
-    let solved = settings.solve(&scene, &mut |level| {
+    let solved = settings.solve(&scene, &mut |level, _| {
         steps += 1;
         if trace {
             tell(clock, level);

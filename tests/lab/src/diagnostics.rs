@@ -336,7 +336,7 @@ fn cusick(d: f64) -> Result<f64, String> {
     scene.pinned = (0..uv.len()).filter(|&v| uv[v].norm() < SUPPORT + 1e-9).map(|v| v as u32).collect();
     scene.self_collision = false;
     generate::jitter(&mut scene, 1e-4, 1);
-    let x = match StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())) {
+    let x = match StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Continue(())) {
         Ok(state) => state.positions,
         Err(StaticsError::NotAtRest { state, .. }) => state.positions,
         Err(e) => return Err(e.to_string()),

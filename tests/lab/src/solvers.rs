@@ -177,7 +177,7 @@ impl Problem {
         scene.phases.iter_mut().for_each(|p| p.gravity = Vec3::new(0.0, -self.gravity, 0.0));
         scene.self_collision = false;
         let rest = StaticEquilibrium { speed: 1e-6 * self.gravity.sqrt(), ..StaticEquilibrium::default() };
-        match rest.solve(&scene, &mut |_| ControlFlow::Continue(())) {
+        match rest.solve(&scene, &mut |_, _| ControlFlow::Continue(())) {
             Ok(state) => Ok(state.positions),
             Err(e) => Err(e.to_string()),
         }

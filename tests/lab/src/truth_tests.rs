@@ -46,7 +46,7 @@ fn tip_drop(layout: Layout, along: usize, gamma: f64, precision: Precision) -> f
     let coarsest = if gamma > 100.0 { usize::MAX } else { StaticEquilibrium::default().coarsest };
     let rest =
         StaticEquilibrium { speed: 1e-6 * gamma.sqrt(), coarsest, precision, ..StaticEquilibrium::default() };
-    let state = rest.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let state = rest.solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap();
     -tips.iter().map(|&v| state.positions[v].y).sum::<f64>() / tips.len() as f64
 }
 

@@ -171,6 +171,10 @@ pub struct Progress {
     pub residual: f64,
 }
 
+/// Called after every step, with a function that gives the position of every vertex of the scene, m;
+/// it may stop the motion.
+pub type OnStep<'p> = dyn FnMut(&Progress, &dyn Fn() -> Vec<Vec3>) -> ControlFlow<()> + 'p;
+
 /// Where a motion ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moved {
@@ -214,7 +218,7 @@ impl Motion {
         &self,
         scene: &Scene,
         collider: Option<Collider<'_>>,
-        progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        progress: &mut OnStep<'_>,
     ) -> Result<Moved, MotionError> {
         self.run_until_stopped(scene, collider, &Stopper::default(), progress)
     }
@@ -228,7 +232,7 @@ impl Motion {
         scene: &Scene,
         collider: Option<Collider<'_>>,
         stopper: &Stopper,
-        progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        progress: &mut OnStep<'_>,
     ) -> Result<Moved, MotionError> {
         self.run_around(scene, collider, &[], stopper, progress, None)
     }
@@ -245,7 +249,7 @@ impl Motion {
         collider: Option<Collider<'_>>,
         around: &[&dyn CollisionSurface],
         stopper: &Stopper,
-        progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+        progress: &mut OnStep<'_>,
         recorder: Option<&mut Recorder>,
     ) -> Result<Moved, MotionError> {
         scene.check()?;
@@ -307,7 +311,7 @@ struct MotionRun<'a> {
     clock: Instant,
     /// Stops where the caller does, and when the time limit is reached.
     stopper: Stopper,
-    progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    progress: &'a mut OnStep<'a>,
     recorder: Option<&'a mut Recorder>,
 }
 
@@ -424,7 +428,9 @@ impl<'a> MotionRun<'a> {
             return Err(MotionError::FallsPast(Box::new(fallen)));
         }
         self.record(before, moving)?;
-        if (self.progress)(&moving.progress).is_break() {
+        let (pieces, coarser) = (&self.pieces, &self.coarser);
+        let positions = || vertices(pieces, coarser, moving, &moving.state.x);
+        if (self.progress)(&moving.progress, &positions).is_break() {
             return Err(MotionError::Stopped);
         }
         if self.clock.elapsed() > self.settings.budget {
@@ -488,7 +494,12 @@ impl<'a> MotionRun<'a> {
 
     /// Values of the scene's vertices from those of the cloth that moves.
     fn vertices(&self, moving: &Moving, values: &[Vec3]) -> Vec<Vec3> {
-        let values = if moving.is_joined { self.pieces.spread(values) } else { values.to_vec() };
-        self.coarser.iter().rev().fold(values, |values, c| c.prolong(&values))
+        vertices(&self.pieces, &self.coarser, moving, values)
     }
+}
+
+/// Values of the scene's vertices from those of the cloth that moves.
+fn vertices(pieces: &Pieces, coarser: &[Coarser], moving: &Moving, values: &[Vec3]) -> Vec<Vec3> {
+    let values = if moving.is_joined { pieces.spread(values) } else { values.to_vec() };
+    coarser.iter().rev().fold(values, |values, c| c.prolong(&values))
 }

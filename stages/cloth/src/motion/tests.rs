@@ -20,7 +20,7 @@ const METHODS: [Method; 4] = [
 fn run(motion: &Motion, scene: &Scene) -> Result<Moved, MotionError> {
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
     let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
-    motion.run(scene, collider, &mut |_| ControlFlow::Continue(()))
+    motion.run(scene, collider, &mut |_, _| ControlFlow::Continue(()))
 }
 
 fn falling(cells: u32) -> Scene {
@@ -71,7 +71,7 @@ fn a_skirt_is_sewn_and_comes_to_rest_near_where_rest_puts_it() {
     let body = Body::new(body.vertices.clone(), &body.triangles);
     let inside = moved.positions.iter().filter_map(|p| body.nearest(p, 1.0)).filter(|n| n.distance < 0.0);
     assert_eq!(inside.count(), 0);
-    let rest = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let rest = StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap();
     let mean = |p: &[Vector3<f64>]| p.iter().map(|p| p.y).sum::<f64>() / p.len() as f64;
     let apart = mean(&moved.positions) - mean(&rest.positions);
     // It arrives with speed and slides further down than friction would let it from standstill.
@@ -164,7 +164,9 @@ fn bounce(response: Response) -> f64 {
     let surface = Body::new(floor, &sides);
     let motion = Motion { response, dt: 1e-3, ..Motion::default() };
     let moved = motion
-        .run(&scene, Some(Collider { surface: &surface, friction: 0.0 }), &mut |_| ControlFlow::Continue(()))
+        .run(&scene, Some(Collider { surface: &surface, friction: 0.0 }), &mut |_, _| {
+            ControlFlow::Continue(())
+        })
         .unwrap();
     moved.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -219,7 +221,7 @@ fn an_exponential_penalty_carries_the_weight_of_the_cloth() {
         let response = Response { restitution: 0.0, penalty: Some(PenaltyForce::Exponential(at_the_body)) };
         let motion = Motion { response, dt: 1e-3, drag: 10.0, ..Motion::default() };
         let moved = motion
-            .run(&scene, Some(Collider { surface: &surface, friction: 0.0 }), &mut |_| {
+            .run(&scene, Some(Collider { surface: &surface, friction: 0.0 }), &mut |_, _| {
                 ControlFlow::Continue(())
             })
             .unwrap();
@@ -274,7 +276,8 @@ fn a_flag_in_the_wind_comes_to_rest_where_weight_and_wind_balance_and_rest_names
         let (out, down) = (p.z - s.z, scene.positions[scene.pinned[0] as usize].y - p.y);
         assert!((out / out.hypot(down) - sine).abs() < 5e-3, "{} against {sine}", out / out.hypot(down));
     }
-    let error = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let error =
+        StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(
         error.to_string(),
         "wind of 2 m/s has no potential, so this solver finds no state of rest in it; take ImplicitEuler, \
@@ -282,7 +285,7 @@ fn a_flag_in_the_wind_comes_to_rest_where_weight_and_wind_balance_and_rest_names
     );
     let calm = |air: Option<Air>| {
         let rested =
-            StaticEquilibrium::default().solve(&flag(5, air), &mut |_| ControlFlow::Continue(())).unwrap();
+            StaticEquilibrium::default().solve(&flag(5, air), &mut |_, _| ControlFlow::Continue(())).unwrap();
         rested.positions
     };
     assert_eq!(calm(Some(air.calmed())), calm(None));
@@ -300,7 +303,7 @@ fn seams_are_sewn_without_wind() {
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
         let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
         let motion = Motion { until, ..Motion::default() };
-        let ended = motion.run(&scene, collider, &mut |p| {
+        let ended = motion.run(&scene, collider, &mut |p, _| {
             let sewn = last > 0.0 && p.gap == 0.0;
             last = p.gap;
             seen.push((p.time, p.gap, p.speed));
@@ -332,7 +335,7 @@ fn gravity_waits_for_the_seams() {
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
     let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
     let moved = Motion { method, drag: 4.0, ..Motion::default() }
-        .run(&scene, collider, &mut |p| {
+        .run(&scene, collider, &mut |p, _| {
             sewn = if p.gap > 0.0 { p.time } else { sewn };
             time = p.time;
             ControlFlow::Continue(())
@@ -374,7 +377,7 @@ fn a_fall_past_the_body_ends_the_motion_and_one_without_a_body_does_not() {
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
         let collider = body.as_ref().map(|(surface, friction)| Collider { surface, friction: *friction });
         let motion = Motion { method, ..Motion::default() };
-        let error = motion.run(&scene, collider, &mut |p| {
+        let error = motion.run(&scene, collider, &mut |p, _| {
             end = p.time;
             ControlFlow::Continue(())
         });
@@ -401,7 +404,7 @@ fn a_motion_stops_inside_of_a_step() {
         let stopper = Stopper::when(move || count.fetch_add(1, Ordering::Relaxed) >= 2);
         let mut steps = 0;
         let ended =
-            Motion { method, ..Motion::default() }.run_until_stopped(&scene, None, &stopper, &mut |_| {
+            Motion { method, ..Motion::default() }.run_until_stopped(&scene, None, &stopper, &mut |_, _| {
                 steps += 1;
                 ControlFlow::Continue(())
             });

@@ -161,7 +161,10 @@ pub(crate) fn moved(
     let stopper = Stopper::when(move || cancel.is_cancelled());
     let begun = frames::recorder(time.frames, garment, cx)?;
     let mut recorder = None;
-    let mut tell = |p: &Progress| tell(p, time, cx);
+    let mut tell = |p: &Progress, positions: &dyn Fn() -> Vec<Vector3<f64>>| {
+        cx.moves(|| points(&positions()));
+        tell(p, time, cx)
+    };
     let moved = sewn_twice(collider.filter(|_| motion.through.is_some()), cx, |around| {
         recorder = begun.clone();
         motion.run_around(&scene, engine_collider, around, &stopper, &mut tell, recorder.as_mut())
@@ -213,10 +216,15 @@ fn sewn_twice(
     run(&around).or(first)
 }
 
+/// Positions of the engine as the garment has them.
+pub(super) fn points(positions: &[Vector3<f64>]) -> Vec<Point3> {
+    positions.iter().map(|p| Point3::from(*p)).collect()
+}
+
 /// The garment with its vertices at other positions.
 fn at(garment: &Garment, positions: &[Vector3<f64>]) -> Garment {
     let mut garment = garment.clone();
-    garment.positions = positions.iter().map(|p| Point3::from(*p)).collect();
+    garment.positions = points(positions);
     garment.velocities.fill(Vector3::zeros());
     garment.starts.clear();
     garment

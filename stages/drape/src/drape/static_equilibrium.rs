@@ -13,7 +13,7 @@ use super::by_place;
 use super::layers::{Clothes, Dressed, Single, layers};
 use super::mixed_precision::{self, FactorPrecision};
 use super::models::{BendingModel, MembraneModel, models};
-use super::motion::engine_air;
+use super::motion::{engine_air, points};
 use super::starts;
 use super::{ImplicitEuler, InTime};
 use crate::engine::{
@@ -247,7 +247,7 @@ impl StaticEquilibrium {
             engine_collider,
             &[],
             &stopper,
-            &mut |level| progress.tell(level),
+            &mut |level, positions| progress.tell(level, positions),
         );
         // What is worn over cloth dips into it between its points; that is resolved later.
         let is_alone = clothes.is_none() || result.is_err();
@@ -264,9 +264,10 @@ impl StaticEquilibrium {
                 // Both solves together get the time limit.
                 let solver =
                     Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
-                let second = solver.solve_around(&scene, engine_collider, &around, &stopper, &mut |level| {
-                    progress.tell(level)
-                });
+                let mut tell = |level: &LevelReport, positions: &dyn Fn() -> Vec<Vector3<f64>>| {
+                    progress.tell(level, positions)
+                };
+                let second = solver.solve_around(&scene, engine_collider, &around, &stopper, &mut tell);
                 if is_better(&second, &result) {
                     result = second;
                 } else {
@@ -379,7 +380,7 @@ impl StaticEquilibrium {
     /// The garment at rest somewhere.
     fn at(&self, garment: &Garment, positions: &[Vector3<f64>]) -> Garment {
         let mut garment = garment.clone();
-        garment.positions = positions.iter().map(|p| Point3::from(*p)).collect();
+        garment.positions = points(positions);
         garment.velocities.fill(Vector3::zeros());
         garment.starts.clear();
         garment
@@ -410,12 +411,13 @@ struct SolverProgress<'a> {
 }
 
 impl SolverProgress<'_> {
-    fn tell(&mut self, level: &LevelReport) -> ControlFlow<()> {
+    fn tell(&mut self, level: &LevelReport, positions: &dyn Fn() -> Vec<Vector3<f64>>) -> ControlFlow<()> {
         self.steps += 1;
         self.cx.work(level.nodes as f64 / self.vertices.max(1) as f64);
         if self.cx.check().is_err() {
             return ControlFlow::Break(());
         }
+        self.cx.moves(|| points(&positions()));
         let (speed, [pass, passes]) = (level.outcome.speed, level.pass);
         let text = match level.sewing {
             true => format!("sewing: {} is open by {:.1} mm", engine::seam(&level.seam), level.gap * 1e3),

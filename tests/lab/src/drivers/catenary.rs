@@ -85,9 +85,11 @@ impl Problem {
     fn rest(&self, options: &Options) -> Ran {
         let scene = self.mesh.scene(&self.fabric, &self.model, &self.start);
         let rest = StaticEquilibrium { speed: SPEED, ..StaticEquilibrium::default() };
-        let mut listen =
-            |_: &_| if (options.stop)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        match rest.solve(&scene, &mut listen) {
+        let solved = rest.solve(&scene, &mut |_, _| match (options.stop)() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        });
+        match solved {
             Ok(state) => Some(Ok(self.error(&state.positions))),
             Err(StaticsError::Stopped) => None,
             Err(e) => Some(Err(e.to_string())),

@@ -159,7 +159,7 @@ fn to_rest(hung: &Hung, options: &Options) -> Option<Ran> {
         budget: Duration::from_secs_f64(PATIENCE * options.longest),
         ..StaticEquilibrium::default()
     };
-    let solved = rest.solve(&scene(hung), &mut |_| {
+    let solved = rest.solve(&scene(hung), &mut |_, _| {
         steps += 1;
         if (options.stop)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

@@ -66,7 +66,7 @@ pub(super) fn checks(large: bool) -> Vec<Check> {
 }
 
 fn solve(scene: &Scene) -> Result<Equilibrium, StaticsError> {
-    StaticEquilibrium::default().solve(scene, &mut |_| ControlFlow::Continue(()))
+    StaticEquilibrium::default().solve(scene, &mut |_, _| ControlFlow::Continue(()))
 }
 
 /// Two sheets that hang side by side, to be sewn, so far apart.

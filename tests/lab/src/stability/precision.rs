@@ -70,7 +70,7 @@ fn factors() -> Result<(bool, String), StaticsError> {
     scene.self_collision = false;
     let rest = |precision| {
         let rest = StaticEquilibrium { speed: 1e-6, precision, ..StaticEquilibrium::default() };
-        rest.solve(&scene, &mut |_| ControlFlow::Continue(())).map(|state| state.positions)
+        rest.solve(&scene, &mut |_, _| ControlFlow::Continue(())).map(|state| state.positions)
     };
     let apart = apart(&rest(Precision::Double)?, &rest(Precision::Mixed)?);
     Ok((apart < ROUNDED, format!("factors of single precision move the answer by {apart:.0e} lengths")))

@@ -203,7 +203,8 @@ impl<'a> Solve<'a> {
             report.seam = if gap > 0.0 { self.widest_seam(k, x) } else { String::new() };
             (report.gap, report.outcome, report.seconds) = (gap, *outcome, seconds);
             stop = self.fallen(k, system, sheet, x, &piece);
-            if stop.is_none() && progress(&report).is_break() {
+            let positions = || self.positions(mesh, x);
+            if stop.is_none() && progress(&report, &positions).is_break() {
                 stop = Some(StaticsError::Stopped);
             }
             is_late = late();
@@ -236,9 +237,13 @@ impl<'a> Solve<'a> {
     /// The error of a level that is out of time with its nodes at `x`.
     fn timeout(&self, mesh: LevelMesh<'_>, x: &[Vec3]) -> StaticsError {
         let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.plan.pieces.len());
+        StaticsError::Timeout { seconds, level: levels - mesh.k, levels, positions: self.positions(mesh, x) }
+    }
+
+    /// The positions of the finest vertices, from those of a level's nodes.
+    fn positions(&self, mesh: LevelMesh<'_>, x: &[Vec3]) -> Vec<Vec3> {
         let vertices = if mesh.is_open { x.to_vec() } else { self.plan.pieces[mesh.k].spread(x) };
-        let positions = self.prolonged(mesh.k, vertices);
-        StaticsError::Timeout { seconds, level: levels - mesh.k, levels, positions }
+        self.prolonged(mesh.k, vertices)
     }
 
     /// The positions of the vertices of level `k`, prolonged to the finest vertices.

@@ -225,7 +225,7 @@ impl<'a> Live<'a> {
         let mut outcome = self.newton.outcome();
         while !outcome.at_rest && outcome.steps < first + options.steps {
             outcome = self.step(&options, &|| clock.elapsed() > budget)?;
-            if progress(&self.report(clock, first)).is_break() {
+            if progress(&self.report(clock, first), &|| self.positions()).is_break() {
                 return Err(StaticsError::Stopped);
             }
         }

@@ -94,7 +94,7 @@ impl StaticEquilibrium {
         let plan = Plan::new(self, coarsest, scene, collider, around, stopper, &start)?;
         let mut solve = Solve::new(&plan, Instant::now());
         let level = plan.coarsest_level();
-        let (gap, positions) = match solve.sew(&mut |_| ControlFlow::Continue(())) {
+        let (gap, positions) = match solve.sew(&mut |_, _| ControlFlow::Continue(())) {
             Ok(()) => (0.0, solve.prolonged(level, plan.pieces[level].spread(&solve.x))),
             Err(StaticsError::SeamNotClosed { gap, positions, .. }) => (gap, positions),
             Err(error) => return Err(error),

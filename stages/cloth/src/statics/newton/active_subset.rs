@@ -81,7 +81,7 @@ mod tests {
     fn skirt([nx, ny]: [u32; 2], asleep: bool) -> (Equilibrium, usize) {
         let (scene, mut levels) = (generate::tube(nx, ny), vec![]);
         let settings = StaticEquilibrium { asleep, ..StaticEquilibrium::default() };
-        let state = settings.solve(&scene, &mut |level| {
+        let state = settings.solve(&scene, &mut |level, _| {
             levels.push(level.nodes);
             ControlFlow::Continue(())
         });

@@ -6,7 +6,7 @@ use crate::fabric::{Curve, Fabric};
 use crate::scene::{Phase, generate};
 use std::ops::ControlFlow;
 
-const GO_ON: fn(&LevelReport) -> ControlFlow<()> = |_| ControlFlow::Continue(());
+const GO_ON: fn(&LevelReport, &dyn Fn() -> Vec<Vec3>) -> ControlFlow<()> = |_, _| ControlFlow::Continue(());
 
 fn fresh(scene: &Scene) -> Equilibrium {
     StaticEquilibrium::default().solve(scene, &mut GO_ON.clone()).unwrap()

@@ -5,10 +5,11 @@ use super::*;
 use crate::scene::generate;
 use std::ops::ControlFlow;
 use std::time::Duration;
+use toile_geometry::Vec3;
 
 fn graded(scene: &Scene) -> Equilibrium {
     let settings = StaticEquilibrium { bending_continuation: true, ..StaticEquilibrium::default() };
-    match settings.solve(scene, &mut |_| ControlFlow::Continue(())) {
+    match settings.solve(scene, &mut |_, _| ControlFlow::Continue(())) {
         Err(StaticsError::NotAtRest { state, .. }) => *state,
         other => other.unwrap(),
     }
@@ -81,7 +82,7 @@ fn out_of_time_tells_the_mesh_whatever_the_state_of_stiffness() {
         budget: Duration::from_secs(1),
         ..StaticEquilibrium::default()
     };
-    let mut progress = |level: &LevelReport| {
+    let mut progress = |level: &LevelReport, _: &dyn Fn() -> Vec<Vec3>| {
         if level.nodes == scene.rest.len() {
             std::thread::sleep(settings.budget);
         }

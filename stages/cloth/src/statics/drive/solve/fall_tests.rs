@@ -30,7 +30,7 @@ fn fall(scene: &Scene, graded: bool) -> (crate::contact::past::Fallen, usize) {
     let mut finest = 0;
     let solved = StaticEquilibrium { bending_continuation: graded, ..StaticEquilibrium::default() }.solve(
         scene,
-        &mut |level| {
+        &mut |level, _| {
             finest = finest.max(if level.sewing { 0 } else { level.nodes });
             ControlFlow::Continue(())
         },

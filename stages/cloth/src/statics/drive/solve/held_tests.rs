@@ -39,7 +39,7 @@ fn bent(layout: Layout, along: usize, ratio: f64) -> Scene {
 fn left(layout: Layout, along: usize, ratio: f64) -> f64 {
     let scene = bent(layout, along, ratio);
     let settings = StaticEquilibrium { speed: 1e-5, ..StaticEquilibrium::default() };
-    let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let state = settings.solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap();
     let of_row = |low: f64, high: f64| {
         let row: Vec<usize> =
             (0..scene.rest.len()).filter(|&v| (low..=high).contains(&scene.rest[v].y)).collect();
@@ -75,10 +75,10 @@ fn a_bent_strip_springs_back_to_a_curvature_that_its_friction_holds() {
 fn a_followed_strip_keeps_its_folds() {
     let scene = bent(Layout::Equilateral, 20, 20.0);
     let settings = StaticEquilibrium { speed: 1e-5, ..StaticEquilibrium::default() };
-    let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let state = settings.solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap();
     assert!(!state.folds.is_empty());
     let mut live = crate::statics::drive::live::Live::new(settings, scene.clone(), None, &state).unwrap();
-    let again = live.settle(&mut |_| ControlFlow::Continue(())).unwrap();
+    let again = live.settle(&mut |_, _| ControlFlow::Continue(())).unwrap();
     let moved = state.positions.iter().zip(&again.positions).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(moved < 1e-4, "{moved}");
 }
@@ -91,7 +91,7 @@ fn what_friction_held_holds_again() {
     scene.material.bending_friction_warp = 3e-4;
     scene.material.bending_friction_weft = 3e-4;
     let solve = |settings: StaticEquilibrium, scene: &Scene| {
-        settings.solve(scene, &mut |_| ControlFlow::Continue(())).unwrap()
+        settings.solve(scene, &mut |_, _| ControlFlow::Continue(())).unwrap()
     };
     let first = solve(StaticEquilibrium::default(), &scene);
     scene.positions.clone_from(&first.positions);
@@ -118,7 +118,7 @@ fn from_here_a_garment_at_rest_stays_where_it_is() {
     let mut steps = 0;
     let mut solve = |settings: StaticEquilibrium, scene: &Scene| {
         steps = 0;
-        let state = settings.solve(scene, &mut |_| {
+        let state = settings.solve(scene, &mut |_, _| {
             steps += 1;
             ControlFlow::Continue(())
         });

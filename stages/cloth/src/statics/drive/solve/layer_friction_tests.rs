@@ -37,7 +37,7 @@ fn stacked(layout: Layout, tangent: f64, frictions: &[f64]) -> Scene {
 fn slid(scene: &Scene, k: usize) -> (f64, bool) {
     // A sheet 2 % above its angle gains but 0.6 mm/s in the step that proves rest.
     let settings = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
-    let (state, rests) = match settings.solve(scene, &mut |_| ControlFlow::Continue(())) {
+    let (state, rests) = match settings.solve(scene, &mut |_, _| ControlFlow::Continue(())) {
         Ok(state) => (state, true),
         Err(StaticsError::NotAtRest { state, .. }) => (*state, false),
         Err(StaticsError::FallsPast(_)) => return (f64::INFINITY, false),
@@ -96,10 +96,10 @@ fn a_garment_that_goes_on_remembers_what_holds_it() {
     let body = Body::new(b.vertices.clone(), &b.triangles);
     let collider = Collider { surface: &body, friction: b.friction };
     let settings = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
-    let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let state = settings.solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap();
     let moved = |state: &Equilibrium| {
         let mut live = Live::new(settings, scene.clone(), Some(collider), state).unwrap();
-        let next = live.settle(&mut |_| ControlFlow::Continue(())).unwrap();
+        let next = live.settle(&mut |_, _| ControlFlow::Continue(())).unwrap();
         let ways = next.positions.iter().zip(&state.positions).map(|(a, b)| (a - b).norm());
         ways.fold(0.0, f64::max)
     };

@@ -13,7 +13,7 @@ const BENDINGS: [Bending; 4] = [Bending::Quadratic, Bending::Hinge, Bending::Dis
 
 fn with(models: Models, scene: &Scene) -> Result<Equilibrium, StaticsError> {
     StaticEquilibrium { models, ..StaticEquilibrium::default() }
-        .solve(scene, &mut |_| ControlFlow::Continue(()))
+        .solve(scene, &mut |_, _| ControlFlow::Continue(()))
 }
 
 #[test]

@@ -39,7 +39,8 @@ fn a_curtain_gathered_to_pins_folds() {
         }
         scene.seams.push(Seam::new("rail", pairs.clone()));
         scene.panels[0].vertices.end = scene.rest.len();
-        let state = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+        let state =
+            StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap();
         for [a, b] in pairs {
             assert_eq!(state.positions[a as usize], state.positions[b as usize]);
         }
@@ -56,7 +57,7 @@ fn a_curtain_hangs_from_pins_that_belong_to_no_triangle() {
         let [left, right] = scene.seams[0].pairs[..] else { panic!() };
         for graded in [false, true] {
             let state = StaticEquilibrium { bending_continuation: graded, ..StaticEquilibrium::default() }
-                .solve(&scene, &mut |_| ControlFlow::Continue(()))
+                .solve(&scene, &mut |_, _| ControlFlow::Continue(()))
                 .unwrap();
             let x = &state.positions;
             for [corner, pin] in [left, right] {
@@ -274,15 +275,17 @@ fn crossed() -> Scene {
 fn a_skirt_whose_panels_start_behind_each_other_is_sewn_through_and_ends_as_ever() {
     let scene = crossed();
     let plain = StaticEquilibrium { bending_continuation: true, ..StaticEquilibrium::default() };
-    let refused = plain.solve(&scene, &mut |_| ControlFlow::Continue(())).err();
+    let refused = plain.solve(&scene, &mut |_, _| ControlFlow::Continue(())).err();
     assert!(matches!(refused, Some(StaticsError::Start(StartError::Crossing { .. }))));
     let through = StaticEquilibrium { sew_through: true, ..plain };
-    let state = through.solve(&scene, &mut |_| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
+    let state =
+        through.solve(&scene, &mut |_, _| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
     let x = &state.positions;
     picture(&scene, x, "sewn_through");
     assert_eq!((gap(&scene, x), crossings(&scene, x)), (0.0, 0));
     let middle = x.iter().map(|p| p.y).sum::<f64>() / x.len() as f64;
-    let as_ever = plain.solve(&generate::tube(12, 16), &mut |_| ControlFlow::Continue(())).unwrap().positions;
+    let as_ever =
+        plain.solve(&generate::tube(12, 16), &mut |_, _| ControlFlow::Continue(())).unwrap().positions;
     let wanted = as_ever.iter().map(|p| p.y).sum::<f64>() / x.len() as f64;
     assert!((middle - wanted).abs() < 0.05, "{middle} {wanted}");
 }
@@ -301,7 +304,7 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
         StaticEquilibrium { bending_continuation: true, sew_through: true, ..StaticEquilibrium::default() };
     let solve = |around: &[&dyn CollisionSurface]| {
         through
-            .solve_around(&scene, Some(collider), around, &Stopper::default(), &mut |_| {
+            .solve_around(&scene, Some(collider), around, &Stopper::default(), &mut |_, _| {
                 ControlFlow::Continue(())
             })
             .unwrap()
@@ -323,7 +326,7 @@ fn a_share_of_the_vertices_may_still_move() {
     let scene = generate::drape(10);
     let steps = |settings: StaticEquilibrium| {
         let state =
-            settings.solve(&scene, &mut |_| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
+            settings.solve(&scene, &mut |_, _| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
         assert!(state.outcome.non_static <= settings.non_static && state.outcome.speed < settings.speed);
         if settings.non_static == 0.0 {
             assert_eq!(state.outcome.speed, state.outcome.fastest);

@@ -12,7 +12,7 @@ use toile_geometry::Vec3;
 use toile_geometry::cloth_tree::ClothTree;
 
 pub(super) fn settle(scene: &Scene) -> Result<Equilibrium, StaticsError> {
-    StaticEquilibrium::default().solve(scene, &mut |_| ControlFlow::Continue(()))
+    StaticEquilibrium::default().solve(scene, &mut |_, _| ControlFlow::Continue(()))
 }
 
 /// The same, where a state that still moves a little is good enough.
@@ -236,7 +236,7 @@ fn where_the_caller_has_another_way_a_seam_that_stays_open_is_not_tried_on_ever_
     let meshes = |gives_way: bool| {
         let mut sewn_on: Vec<usize> = Vec::new();
         let solver = StaticEquilibrium { gives_way, sew_through: true, coarsest: 60, ..Default::default() };
-        let result = solver.solve(&scene, &mut |level| {
+        let result = solver.solve(&scene, &mut |level, _| {
             if level.sewing && sewn_on.last() != Some(&level.nodes) {
                 sewn_on.push(level.nodes);
             }
@@ -267,10 +267,10 @@ fn crossing_panels_are_refused() {
 #[test]
 fn a_caller_can_stop_and_time_can_run_out() {
     let scene = generate::hang(9);
-    let stopped = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Break(()));
+    let stopped = StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Break(()));
     assert_eq!(stopped.unwrap_err(), StaticsError::Stopped);
     let hurried = StaticEquilibrium { budget: Duration::ZERO, ..StaticEquilibrium::default() }
-        .solve(&scene, &mut |_| ControlFlow::Continue(()));
+        .solve(&scene, &mut |_, _| ControlFlow::Continue(()));
     match hurried.unwrap_err() {
         StaticsError::Timeout { positions, .. } => assert_eq!(positions.len(), scene.rest.len()),
         error => panic!("{error}"),
@@ -337,6 +337,6 @@ fn sheets_too_coarse_for_the_ball_to_catch_are_tried_finer() {
     }
     let finer =
         |l: &LevelReport| if l.nodes > 200 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    let error = StaticEquilibrium::default().solve(&scene, &mut |l| finer(l)).unwrap_err();
+    let error = StaticEquilibrium::default().solve(&scene, &mut |l, _| finer(l)).unwrap_err();
     assert_eq!(error, StaticsError::Stopped);
 }

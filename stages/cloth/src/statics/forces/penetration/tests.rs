@@ -75,7 +75,7 @@ fn windings(x: &[Vec3]) -> f64 {
 fn an_arm_at_an_angle_to_its_sleeve_stays_inside_it() {
     let rest = StaticEquilibrium { coarsest: 20, ..StaticEquilibrium::default() };
     for degrees in [15.0, 20.0] {
-        let state = rest.solve(&askew(1.6, degrees), &mut |_| ControlFlow::Continue(())).unwrap();
+        let state = rest.solve(&askew(1.6, degrees), &mut |_, _| ControlFlow::Continue(())).unwrap();
         assert!((windings(&state.positions).abs() - 1.0).abs() < 1e-9);
         assert_eq!((state.dip, state.restarts > 0), (0.0, true));
     }

@@ -137,7 +137,7 @@ fn middles(x: &[Vec3]) -> Vec<f64> {
 fn six_sheets_come_to_rest_in_order() {
     let heights = [4, 1, 0, 5, 2, 3];
     let scene = shuffled(&heights);
-    let state = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let state = StaticEquilibrium::default().solve(&scene, &mut |_, _| ControlFlow::Continue(())).unwrap();
     assert!(state.outcome.at_rest && state.outcome.dt < 0.017 && state.outcome.speed < 1e-3);
     assert!(state.residual < 0.02, "{}", state.residual);
     let found = middles(&state.positions);
@@ -151,7 +151,7 @@ fn six_sheets_come_to_rest_in_order() {
 #[test]
 fn a_stack_that_is_stopped_returns_so() {
     let mut steps = 0;
-    let stopped = StaticEquilibrium::default().solve(&generate::stack(6, CELLS), &mut |_| {
+    let stopped = StaticEquilibrium::default().solve(&generate::stack(6, CELLS), &mut |_, _| {
         steps += 1;
         if steps == 20 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
