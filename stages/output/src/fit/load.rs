@@ -77,6 +77,14 @@ impl ClothLoad {
     }
 }
 
+/// Pressure of a garment at rest on its body, Pa, one per vertex; none where the cloth is not on it.
+///
+/// # Errors
+/// A fabric whose curves the engine does not take.
+pub fn pressures(garment: &Garment, collider: &Collider) -> Result<Vec<Option<f64>>, StageError> {
+    Ok(ClothLoad::of(garment, Some(collider), &Context::quiet())?.pressure)
+}
+
 /// A triangle of cloth, deformed.
 struct DeformedTriangle {
     strain: Yarns,

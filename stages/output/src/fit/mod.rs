@@ -9,6 +9,7 @@ mod tests;
 mod words;
 
 use self::load::ClothLoad;
+pub use self::load::pressures;
 use self::map::VertexMap;
 use self::openings::{finished, openings};
 use crate::file_names::check_name;
