@@ -1,15 +1,13 @@
 //! Files named by `--set`: as on any command line, relative to the current folder.
 //!
 //! A pipeline's own paths are relative to the pipeline file. The value of a field that names a file
-//! (`FIELDS`) on the command line that is a file seen from the current folder becomes its full
+//! (`FILE_PARAMS`) on the command line that is a file seen from the current folder becomes its full
 //! path; quotes may be left out. So does such a field within brackets
 //! (`--set 'body=BodyObj(file: "me.obj")'`), and each file of a list (`LISTS`).
 
 use std::path::{Path, PathBuf};
+use toile_core::param::FILE_PARAMS;
 use toile_pipeline::Override;
-
-/// Fields whose values are paths of files that a stage reads.
-const FIELDS: [&str; 4] = ["file", "seams", "measurements", "panorama"];
 
 /// Fields whose values are lists of such paths.
 const LISTS: [&str; 1] = ["garments"];
@@ -59,7 +57,7 @@ fn is_open_text(value: &str) -> bool {
 }
 
 fn names_file(o: &Override) -> bool {
-    o.path.rsplit('.').next().is_some_and(|field| FIELDS.contains(&field))
+    o.path.rsplit('.').next().is_some_and(|field| FILE_PARAMS.contains(&field))
 }
 
 /// The override with the files found that fields within its value name.
@@ -76,7 +74,7 @@ fn within(find: &mut dyn FnMut(&str) -> Option<PathBuf>, o: &Override) -> Overri
             Some(head) => LISTS.contains(&field_before(head)),
             None => in_list && before == ",",
         };
-        let is_file = in_list || FIELDS.contains(&field_before(before));
+        let is_file = in_list || FILE_PARAMS.contains(&field_before(before));
         match is_file.then(|| find(text)).flatten() {
             Some(full) => value.push_str(&format!("{:?}", full.display().to_string())),
             None => value.push_str(&format!("\"{text}\"")),

@@ -180,7 +180,8 @@ fn card_json(card: &Card, known: &Contracts) -> Value {
         .iter()
         .map(|p| {
             json!({ "name": p.name, "doc": p.doc, "type": p.kind, "unit": p.unit, "min": p.min, "max": p.max,
-                "default": p.default, "trades": p.trades, "finer": p.finer.map(Finer::as_str) })
+                "default": p.default, "trades": p.trades, "finer": p.finer.map(Finer::as_str),
+                "file": p.names_file() })
         })
         .collect();
     let inputs: Vec<Value> = card

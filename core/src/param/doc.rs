@@ -31,7 +31,15 @@ pub struct ParamDoc {
     pub check: Check,
 }
 
+/// Parameters whose values are paths of files that a stage reads.
+pub const FILE_PARAMS: [&str; 4] = ["file", "seams", "measurements", "panorama"];
+
 impl ParamDoc {
+    /// Whether its value is the path of a file that the stage reads, one of [`FILE_PARAMS`].
+    pub fn names_file(&self) -> bool {
+        FILE_PARAMS.contains(&self.name) && self.kind.starts_with("text")
+    }
+
     /// Its range in words, `1 mm to 100 mm`; `None` where it has none.
     pub fn range(&self) -> Option<String> {
         let show =

@@ -18,7 +18,7 @@ mod words;
 pub use dialect::ron_options;
 #[doc(hidden)]
 pub use dialect::ron_text;
-pub use doc::{Check, Finer, ParamDoc};
+pub use doc::{Check, FILE_PARAMS, Finer, ParamDoc};
 pub use fault::ParamFault;
 pub use group::Params;
 pub use kind::ParamType;
