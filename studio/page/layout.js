@@ -104,7 +104,7 @@ export function mountWork(work) {
     );
     narrow.addEventListener("change", apply);
     watch(["state"], () => {
-        work.hidden = !store.state?.project.file;
+        work.hidden = !store.state?.project.file || store.beginsAnew;
     });
     apply();
 }

@@ -16,6 +16,11 @@ impl Pulse {
         self.0.send_modify(|count| *count += 1);
     }
 
+    /// Whether anybody waits for news.
+    pub(crate) fn is_listened_to(&self) -> bool {
+        self.0.receiver_count() > 0
+    }
+
     /// Waits for news from now on.
     pub(crate) fn listen(&self) -> watch::Receiver<u64> {
         self.0.subscribe()

@@ -10,6 +10,7 @@ use crate::project::change::StudioChange;
 use crate::project::{StudioProject, upload, written, written_file};
 use crate::pulse::Pulse;
 use crate::show::measures::measures;
+use crate::show::proposals::ReadPattern;
 use crate::show::trade::trade;
 use crate::show::view::view;
 use crate::show::{mesh, pictures};
@@ -18,6 +19,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use toile_core::Registry;
 use toile_core::artifact::{Garment, Model};
+use toile_core::param::ron_text;
+use toile_pattern::pattern::seams_file;
 use toile_pipeline::cache::Cache;
 
 /// What a studio is opened with.
@@ -93,13 +96,14 @@ impl Studio {
     pub fn state(&self, with_text: bool) -> Value {
         let project = held(&self.project);
         let checked = project.checked();
-        let (stages, run, view) = {
+        let (stages, run, view, moving) = {
             let live = self.live.state();
+            let moving = live.moving.is_some().then_some(live.moving_number);
             let stage = |line: &crate::project::text::StageLine| {
                 let status = live.stages.get(&line.id).cloned().unwrap_or_default();
                 joined(json!(line), json!(status))
             };
-            (checked.stages.iter().map(stage).collect::<Vec<_>>(), live.run.json(), live.view)
+            (checked.stages.iter().map(stage).collect::<Vec<_>>(), live.run.json(), live.view, moving)
         };
         let mut state = json!({
             "project": {
@@ -114,6 +118,7 @@ impl Studio {
             "stages": stages,
             "run": run,
             "view": view,
+            "moving": moving,
         });
         if with_text {
             state["text"] = json!(project.text());
@@ -146,6 +151,31 @@ impl Studio {
     /// Errors: those of [`StudioProject::redo`].
     pub fn redo(&self, edit: u64) -> Result<u64, StudioFault> {
         self.after(|project| project.redo(edit))
+    }
+
+    /// Sews the proposed seams of these names: writes them into a file and gives it to the pattern's
+    /// reader. A run follows.
+    ///
+    /// Errors: the reader takes no seams or has some; a name that is not proposed; those of
+    /// [`StudioProject::edit`].
+    pub(crate) fn sew(&self, edit: u64, words: &str, names: &[String]) -> Result<u64, StudioFault> {
+        let none = || StudioFault::malformed("the pattern's file has its seams, or takes none");
+        held(&self.project).checked().seams_to_give().ok_or_else(none)?;
+        let read = self.shown().read;
+        let proposed = read.as_deref().map(ReadPattern::proposed).unwrap_or_default();
+        let find = |name: &String| {
+            let found = proposed.iter().find(|p| p.seam.name == *name);
+            found.ok_or_else(|| StudioFault::not_found(format!("there is no proposed seam \"{name}\"")))
+        };
+        let chosen = names.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+        if chosen.is_empty() {
+            return Err(StudioFault::malformed("no seam is named"));
+        }
+        self.after(|project| {
+            let path = project.checked().seams_to_give().ok_or_else(none)?;
+            let file = upload(&self.folder, "seams.ron", seams_file(chosen.iter().copied()).as_bytes())?;
+            project.edit(edit, words, &[StudioChange::Set { path, value: ron_text(&file) }], false)
+        })
     }
 
     /// Writes the file; gives its name.
@@ -217,12 +247,12 @@ impl Studio {
 
     /// What runs have made so far.
     pub(crate) fn view(&self) -> Value {
-        let given = held(&self.project).checked().landmarks();
+        let checked = held(&self.project).checked();
         let (number, shown) = {
             let live = self.live.state();
             (live.view, live.shown())
         };
-        view(number, &shown, &given)
+        view(number, &shown, &checked.landmarks(), checked.seams_to_give().is_some())
     }
 
     fn shown(&self) -> ShownArtifacts {
@@ -259,6 +289,13 @@ impl Studio {
         let bytes = Arc::new(mesh::garment(&garment, &shown));
         *held(&self.packed) = Some(PackedGarment { garment, model: shown.model, bytes: bytes.clone() });
         Ok(bytes)
+    }
+
+    /// Where the vertices of the garment have come to while it is draped, as a file.
+    pub(crate) fn moving(&self) -> Result<Vec<u8>, StudioFault> {
+        let none = || StudioFault::not_found("no garment is being draped");
+        let moving = self.live.state().moving.clone();
+        Ok(mesh::places(&moving.ok_or_else(none)?))
     }
 
     /// The garment of the run before the last edit.
@@ -330,7 +367,8 @@ impl Studio {
 /// The project's text to run; none before there is one.
 fn ask(project: &StudioProject, kinds: Vec<RunKind>) -> Option<RunAsk> {
     let file = project.file()?.to_owned();
-    Some(RunAsk { text: project.text().to_owned(), file, base: project.folder().to_owned(), kinds })
+    let (text, base) = (project.text().to_owned(), project.folder().to_owned());
+    Some(RunAsk { text, edit: project.number(), file, base, kinds })
 }
 
 fn no_text() -> StudioFault {

@@ -69,6 +69,11 @@ fn a_project_begins_with_a_sample_a_photo_or_a_pattern() {
         (json!({ "photo": "tee.jpg", "width": "80 cm" }), "Neckline", Some("tee.jpg")),
         (json!({ "photo": "tee.jpg" }), "Neckline", Some("tee.jpg")),
         (json!({ "pattern": "mine.json" }), "GarmentCode", Some("mine.json")),
+        (
+            json!({ "pattern": "skirt.sm2d", "measurements": "body.smis" }),
+            "SeamlyPattern",
+            Some("skirt.sm2d"),
+        ),
     ] {
         let dir = tempfile::tempdir().unwrap();
         let served = Served::new(dir.path(), false);
@@ -77,12 +82,20 @@ fn a_project_begins_with_a_sample_a_photo_or_a_pattern() {
         if let Some(file) = lacks {
             let refusal = served.client.post("/api/begin", &with).refusal();
             assert_eq!(refusal, (404, "not_found".to_owned(), format!("the project has no file \"{file}\"")));
-            let shipped = match file {
-                "tee.jpg" => "samples/tshirt/front.jpg",
-                _ => "samples/pattern/shirt_specification.json",
+            let lay = |shipped: &str, name: &str| {
+                let samples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../pipelines/samples");
+                std::fs::copy(samples.join(shipped), dir.path().join(name)).unwrap();
             };
-            let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../pipelines").join(shipped);
-            std::fs::copy(shipped, dir.path().join(file)).unwrap();
+            match file {
+                "tee.jpg" => lay("tshirt/front.jpg", file),
+                "skirt.sm2d" => lay("pattern/skirt.sm2d", file),
+                _ => lay("pattern/shirt_specification.json", file),
+            }
+            if let Some(measurements) = with["measurements"].as_str() {
+                let refusal = served.client.post("/api/begin", &with).refusal();
+                assert_eq!(refusal.2, format!("the project has no file \"{measurements}\""));
+                lay("pattern/body.smis", measurements);
+            }
         }
         let begun = served.client.post("/api/begin", &with);
         assert_eq!((begun.status, begun.json()), (200, json!({ "edit": 1 })), "{with}");
@@ -96,6 +109,25 @@ fn a_project_begins_with_a_sample_a_photo_or_a_pattern() {
         let again = served.client.post("/api/begin", &with).refusal();
         assert_eq!(again, (409, "exists".to_owned(), "the project has a pipeline already".to_owned()));
     }
+}
+
+#[test]
+fn a_project_begins_anew_and_undo_brings_the_pipeline_before_it_back() {
+    let dir = folder(MASKS);
+    let served = Served::new(dir.path(), false);
+    let client = &served.client;
+    std::fs::write(dir.path().join("mine.jpg"), "no picture").unwrap();
+    let with = json!({ "photo": "mine.jpg", "width": "80 cm", "anew": true });
+    assert_eq!(client.post("/api/begin", &with).json(), json!({ "edit": 2 }));
+    let state = client.state();
+    assert!(state["text"].as_str().unwrap().contains("\"mine.jpg\""), "{state:#}");
+    assert_eq!(state["project"]["can_undo"], "begin with mine.jpg");
+    // The sample's photo is not the one that lies here.
+    std::fs::write(dir.path().join("front.jpg"), "mine").unwrap();
+    let refusal = client.post("/api/begin", &json!({ "sample": "vest", "anew": true })).refusal();
+    assert_eq!(refusal.2, "the folder holds another file \"front.jpg\"");
+    client.post("/api/undo", &json!({ "edit": 2 }));
+    assert_eq!(client.state()["text"], MASKS);
 }
 
 #[test]
@@ -116,6 +148,10 @@ fn a_beginning_that_is_none_is_refused() {
     assert_eq!(
         begin(json!({ "pattern": "mine.doc" })),
         "400 \"mine.doc\" is no pattern file that is known by its ending"
+    );
+    assert_eq!(
+        begin(json!({ "pattern": "mine.dxf", "measurements": "body.smis" })),
+        "400 \"mine.dxf\" is not drafted to measure: it takes no measurements"
     );
     let edit = json!({ "edit": 0, "changes": [{ "text": "()" }] });
     let (status, code, message) = served.client.post("/api/edit", &edit).refusal();

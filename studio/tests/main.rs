@@ -6,6 +6,7 @@ mod edits;
 mod files;
 mod kit;
 mod page;
+mod proposals;
 mod random;
 mod runs;
 mod safety;

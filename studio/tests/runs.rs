@@ -280,3 +280,49 @@ fn a_pattern_is_printed_and_the_file_stays() {
     );
     assert_eq!(client.state()["text"], before);
 }
+
+#[test]
+fn a_garment_at_rest_has_its_pressure_and_its_distance_from_the_body() {
+    let dir = folder(COARSE);
+    let served = Served::new(dir.path(), true);
+    served.client.wait("the full run", |s| is_done(s, "full"));
+    let mesh = Mesh::of(served.client.get("/api/garment").body);
+    let (pressure, distance) = (mesh.floats("pressure"), mesh.floats("distance"));
+    let vertices = mesh.head["vertices"].as_u64().unwrap() as usize;
+    assert_eq!((pressure.len(), distance.len()), (vertices, vertices));
+    assert!(distance.iter().all(|d| (0.0..=0.25).contains(d)), "no cloth is in the body");
+    // The straps lie on the shoulders and carry the vest; the hem is off the body.
+    let most = |of: &[f32]| of.iter().copied().fold(0.0, f32::max);
+    assert!((50.0..20_000.0).contains(&most(&pressure)), "{}", most(&pressure));
+    assert!(most(&distance) > 0.02, "{}", most(&distance));
+    for (p, d) in pressure.iter().zip(&distance) {
+        assert!(*p == 0.0 || *d < 0.01, "{p} Pa at {d} m");
+    }
+}
+
+#[test]
+fn a_garment_is_seen_while_it_is_draped_by_those_who_listen() {
+    let dir = folder(&COARSE.replace("edge: \"40 mm\"", "edge: \"12 mm\""));
+    let served = Served::new(dir.path(), false);
+    assert_eq!(served.client.get("/api/moving").refusal().2, "no garment is being draped");
+    let client = served.client.clone();
+    served.client.post("/api/run", &json!({ "full": true }));
+    let mut seen = Vec::new();
+    served.client.events(|event, data| {
+        if event == "state" && data["moving"].is_number() {
+            let reply = client.get("/api/moving");
+            // The garment may be at rest by now.
+            if reply.status == 200 {
+                let mesh = Mesh::of(reply.body);
+                assert_eq!(
+                    mesh.floats("positions").len() as u64,
+                    3 * mesh.head["vertices"].as_u64().unwrap()
+                );
+                seen.push(mesh.floats("positions"));
+            }
+        }
+        event != "state" || !is_done(data, "full")
+    });
+    assert!(!seen.is_empty(), "the garment is shown while it moves");
+    assert_eq!(served.client.state()["moving"], Value::Null);
+}

@@ -82,3 +82,39 @@ test("a sample is one click away", async () => {
     await page.locator("#pattern .piece").first().waitFor({ timeout: 120_000 });
     quiet(page);
 });
+
+test("a photo that cannot be read does not hold the folder: one begins anew, and undo goes back", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    const text = { name: "notes.jpg", mimeType: "image/jpeg", buffer: Buffer.from("these are notes") };
+    await page.getByLabel("Choose a file").setInputFiles(text);
+    await page.getByLabel("Width").fill("52");
+    await page.getByRole("button", { name: "Make the garment" }).click();
+    await said(page, /notes\.jpg/);
+    await page.getByText("The photo is not read yet.").waitFor();
+
+    await page.getByRole("button", { name: "New…" }).click();
+    await page.getByRole("button", { name: "Keep this garment" }).click();
+    await page.getByText("The photo is not read yet.").waitFor();
+    await page.getByRole("button", { name: "New…" }).click();
+    await page.getByRole("button", { name: "Vest" }).click();
+    await settled(page);
+    assert.match((await stateOf(page)).text, /"vest"/);
+
+    await page.getByRole("button", { name: "Undo" }).click();
+    await until("the photo before", async () => /notes\.jpg/.test((await stateOf(page)).text));
+});
+
+test("another photo takes the place of one, under the same width", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    const text = { name: "notes.jpg", mimeType: "image/jpeg", buffer: Buffer.from("these are notes") };
+    await page.getByLabel("Choose a file").setInputFiles(text);
+    await page.getByLabel("Width").fill("52");
+    await page.getByRole("button", { name: "Make the garment" }).click();
+    await said(page, /notes\.jpg/);
+    await page.getByLabel("Choose a file for front").setInputFiles(sample("vest/front.jpg"));
+    await settled(page);
+    assert.match((await stateOf(page)).text, /"front": \(file: "front\.jpg", width: "52 cm"\)/);
+    quiet(page);
+});

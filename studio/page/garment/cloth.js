@@ -11,7 +11,7 @@ import {
     SRGBColorSpace,
     TextureLoader,
 } from "../vendor/three.module.min.js";
-import { mapColour, scaleOf } from "./strain.js";
+import { isMap, mapColour, scaleOf } from "./maps.js";
 
 /** How long a garment takes to move to its new place, in milliseconds. */
 const MOVE = 350;
@@ -21,7 +21,7 @@ const loader = new TextureLoader();
 
 function colours(mesh, looks) {
     const found = new Float32Array(3 * mesh.vertices).fill(0.7);
-    if (looks === "strain" || looks === "pressure") {
+    if (isMap(looks)) {
         const values = perVertex(mesh, mesh[looks]);
         const scale = scaleOf(values);
         values.forEach((value, i) =>
@@ -110,9 +110,8 @@ export function makeCloth(world, draw) {
         return scale;
     }
 
-    /** Moves to the new places where the mesh has as many vertices as before, else takes them at once. */
-    function place(before) {
-        const to = mesh.positions;
+    /** Moves to new places where the mesh has as many vertices as before, else takes them at once. */
+    function place(before, to) {
         cancelAnimationFrame(moving);
         if (!before || before.length !== to.length || still.matches) {
             geometry.setAttribute("position", new BufferAttribute(to.slice(), 3));
@@ -142,7 +141,7 @@ export function makeCloth(world, draw) {
         show,
         /** Takes a garment; nothing takes it away. Gives the map's scale. */
         take(next, v) {
-            const before = mesh?.positions;
+            const before = mesh && (geometry.attributes.position?.array ?? mesh.positions);
             mesh = next;
             version = v;
             object.visible = Boolean(mesh);
@@ -153,8 +152,12 @@ export function makeCloth(world, draw) {
             mesh.panels.forEach((panel, i) =>
                 geometry.addGroup(3 * panel.first_triangle, 3 * panel.triangles, i),
             );
-            place(before);
+            place(before, mesh.positions);
             return show(looks);
+        },
+        /** Goes on to where the garment has come to while it is draped. */
+        moveTo(positions) {
+            if (mesh?.vertices === positions.length / 3) place(geometry.attributes.position.array, positions);
         },
     };
 }

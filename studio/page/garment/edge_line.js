@@ -63,7 +63,7 @@ export function edgeLine(piece, edge, array, width) {
 
 /** The edges that are lit: one that is pointed at or chosen, and all edges of its seam. */
 export function litEdges() {
-    const seams = store.view?.pattern?.seams ?? [];
+    const seams = [...(store.view?.pattern?.seams ?? []), ...(store.view?.proposals ?? [])];
     const found = new Map();
     for (const what of [selection.hover, selection.chosen]) {
         const sides = seams.find((seam) => seam.name === what.seam)?.sides.flat() ?? [];

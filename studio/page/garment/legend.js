@@ -2,10 +2,7 @@
 
 import { h, replace } from "../dom/element.js";
 import { t } from "../words/words.js";
-import { drawStripe } from "./strain.js";
-
-const figure = (looks, value) =>
-    looks === "strain" ? `${(100 * value).toFixed(1)} %` : `${value.toFixed(value < 10 ? 1 : 0)} Pa`;
+import { drawStripe, figureOf, isMap } from "./maps.js";
 
 export function mountLegend(root) {
     const stripe = h("canvas", { width: 160, height: 10, "aria-hidden": "true" });
@@ -21,13 +18,13 @@ export function mountLegend(root) {
             root.hidden = scale === null || scale === undefined;
             if (root.hidden) return;
             name.textContent = t(`looks.${looks}`);
-            end.textContent = figure(looks, scale);
+            end.textContent = figureOf(looks, scale);
         },
         at(looks, spot) {
-            const value = spot?.strain;
+            const value = spot?.[looks];
             at.textContent =
-                looks === "strain" && Number.isFinite(value)
-                    ? t("legend.at", { figure: figure(looks, value) })
+                isMap(looks) && Number.isFinite(value)
+                    ? t("legend.at", { figure: figureOf(looks, value) })
                     : "";
         },
     };

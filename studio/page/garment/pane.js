@@ -11,7 +11,7 @@ import { litEdges } from "./edge_line.js";
 import { mountLegend } from "./legend.js";
 import { mountSection } from "./section.js";
 
-const LOOKS = ["texture", "panels", "strain", "pressure"];
+const LOOKS = ["texture", "panels", "strain", "pressure", "distance"];
 const VIEWS = { front: 0, side: Math.PI / 2, back: Math.PI };
 
 /** The box around places, as its middle and its largest side. */
@@ -136,6 +136,12 @@ export function mountGarment(root) {
                     : t("garment.none"),
             );
             tell("layers");
+        });
+        watch(["moving"], () => {
+            if (!store.moving || !store.garment) return;
+            cloth.moveTo(store.moving);
+            // Crossings and gaps are those of the garment at rest.
+            marks.faults(store.garment, false);
         });
         watch(["body"], () => {
             none.hidden = Boolean(store.garment ?? store.body);

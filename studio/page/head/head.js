@@ -4,6 +4,7 @@ import { h, replace } from "../dom/element.js";
 import { t, words } from "../words/words.js";
 import { redo, run, save, stop, undo } from "../server/edits.js";
 import { store, watch, whenChanged } from "../server/store.js";
+import { beginAnew } from "../begin/begin.js";
 import { isDark, switchTheme } from "./theme.js";
 
 const isRunning = () => store.state?.run.state === "running";
@@ -25,6 +26,7 @@ function tools() {
     const undoButton = h("button", { id: "undo", word: "undo", tip: "undo.tip", onclick: undo });
     const redoButton = h("button", { id: "redo", word: "redo", tip: "redo.tip", onclick: redo });
     const saveButton = h("button", { id: "save", word: "save", tip: "save.tip", onclick: save });
+    const anewButton = h("button", { id: "anew", word: "anew", tip: "anew.tip", onclick: () => beginAnew() });
     watch(["state"], () => {
         const project = store.state?.project;
         undoButton.disabled = !project?.can_undo;
@@ -39,6 +41,7 @@ function tools() {
         undoButton,
         redoButton,
         saveButton,
+        anewButton,
     );
 }
 
@@ -107,6 +110,6 @@ export function mountHead(head) {
         document.title = project?.file ? `${project.saved ? "" : "• "}${folder} – Toile` : "Toile studio";
         state.textContent = project?.file ? t(project.saved ? "saved" : "unsaved") : "";
         state.dataset.saved = project?.saved ?? true;
-        for (const group of atWork) group.hidden = !project?.file;
+        for (const group of atWork) group.hidden = !project?.file || store.beginsAnew;
     });
 }

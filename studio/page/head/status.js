@@ -45,10 +45,18 @@ function told(run, words) {
     return missed.length === 0 ? say(what + did, "done") : say(what + missed.join("; "), "error");
 }
 
-const tellRun = whenChanged((number, state, kind, mmMoved, words) => {
-    const { run } = store.state;
-    if (run.number === number) told({ ...run, state, kind }, words);
-    void mmMoved;
+const tellRun = whenChanged((run, words, proposed) => {
+    if (run.state === "failed" && proposed > 0) sayWord("proposals.first");
+    else told(run, words);
+});
+
+/** What was wrong with another text is no longer said. */
+const forget = whenChanged(() => line.dataset.kind === "error" && say(""));
+
+/** What keeps a text from being run. What someone types has its faults below it. */
+const tellFault = whenChanged((edit, fault) => {
+    if (!fault || document.activeElement?.matches("textarea")) return;
+    say(fault.hint ? `${fault.message} (${fault.hint})` : fault.message, "error");
 });
 
 /** `foot` holds the line, `lost` is the banner. */
@@ -57,11 +65,20 @@ export function mountStatus(foot, lost) {
     aside = h("p", { id: "figures" });
     replace(foot, line, aside);
 
-    watch(["state"], () => {
+    watch(["state", "view"], () => {
         const state = store.state;
         if (!state?.project.file) return;
         const { run, project } = state;
-        tellRun(run.number, run.state, run.kind, run.changed?.mm, project.can_undo);
+        forget(project.edit);
+        tellFault(project.edit, state.faults[0]);
+        // What a text comes to is not told before it has run.
+        const isOfThisText = run.edit === project.edit;
+        aside.classList.toggle("old", !isOfThisText || run.state === "running");
+        if (!isOfThisText) return;
+        const { number, state: stands, kind, error, shortfalls, changed, seconds: took } = run;
+        const ended = stands === "running" ? {} : { error, shortfalls, changed, seconds: took };
+        const proposed = store.view?.proposals?.length ?? 0;
+        tellRun({ number, state: stands, kind, ...ended }, project.can_undo, proposed);
     });
     watch(["view"], () => {
         const figures = store.view?.figures;

@@ -8,14 +8,14 @@ import { edgePoints } from "../garment/edge_line.js";
 /** Colours of seams, one after the other; the style sheet has as many. */
 const COLOURS = 10;
 
-/** Seams by edge: {name, number, others}. */
-export function seamsByEdge(seams) {
+/** Seams and proposals by edge: {name, number, others, proposed}. */
+export function seamsByEdge(seams, proposals = []) {
     const found = new Map();
-    seams.forEach((seam, i) => {
+    [...seams, ...proposals].forEach((seam, i) => {
         const all = seam.sides.flat().map(({ piece, edge }) => `${piece}.${edge}`);
         for (const edge of all) {
             const others = all.filter((other) => other !== edge);
-            found.set(edge, { name: seam.name, number: i + 1, others });
+            found.set(edge, { name: seam.name, number: i + 1, others, proposed: i >= seams.length });
         }
     });
     return found;
@@ -34,13 +34,18 @@ const middle = (line) => {
 function edgeElement(piece, edge, at, seam, reach) {
     const name = `${piece.name}.${edge.name}`;
     const line = edgePoints(piece, edge).map(at.to);
-    const sewn = seam ? t("edge.sewn", { to: seam.others.join(", ") }) : t("edge.open");
+    const word = seam?.proposed ? "edge.proposed" : "edge.sewn";
+    const sewn = seam ? t(word, { to: seam.others.join(", ") }) : t("edge.open");
     const label = `${name}, ${cm(edge.length)}, ${sewn}`;
     const colour = seam ? `seam-${(seam.number - 1) % COLOURS}` : "free";
     const [x, y] = middle(line);
     return svg(
         "g",
-        { class: `edge ${colour}`, "data-edge": name, "data-seam": seam?.name },
+        {
+            class: `edge ${colour}${seam?.proposed ? " proposed" : ""}`,
+            "data-edge": name,
+            "data-seam": seam?.name,
+        },
         svg("path", { class: "line", d: path(line) }),
         svg(
             "path",

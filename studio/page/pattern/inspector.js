@@ -6,6 +6,7 @@ import { edit } from "../server/edits.js";
 import { store, watch, whenChanged } from "../server/store.js";
 import { choose, selection } from "../server/selection.js";
 import { alter, dart, lengthen, mirror, reverseSeam, unsew } from "./alterations.js";
+import { proposalLine, proposalList, proposals } from "./proposals.js";
 
 const pattern = () => store.view?.pattern;
 
@@ -157,7 +158,7 @@ function seamList(seams) {
 }
 
 export function mountInspector(root) {
-    const draw = whenChanged((found, chosen) => {
+    const draw = whenChanged((found, chosen, proposed) => {
         if (!found) return replace(root);
         const piece = found.pieces.find((p) => p.name === chosen.piece);
         const edge = chosen.edge && piece?.edges.find((e) => `${piece.name}.${e.name}` === chosen.edge);
@@ -165,12 +166,23 @@ export function mountInspector(root) {
         const seam =
             found.seams.find((s) => s.name === chosen.seam) ??
             found.seams.find((s) => chosen.edge && s.sides.flatMap(names).includes(chosen.edge));
-        if (!piece) return replace(root, seamList(found.seams));
+        if (!piece) {
+            return replace(
+                root,
+                proposed.length > 0 && proposalList(proposed, found.seams.length),
+                (proposed.length === 0 || found.seams.length > 0) && seamList(found.seams),
+            );
+        }
+        const offered = proposed.findIndex((one) => one.name === chosen.seam);
         const corner = chosen.corner !== undefined && piece.edges[chosen.corner];
         return replace(
             root,
             edge && edgePart(chosen.edge, edge),
             seam && seamPart(seam),
+            offered >= 0 && [
+                h("p", { class: "hint", word: "proposals.one" }),
+                proposalLine(proposed[offered], found.seams.length + offered + 1),
+            ],
             corner && cornerPart(piece, chosen.corner, piece.points[corner.start]),
             !edge && !corner && piecePart(piece),
         );
@@ -178,7 +190,7 @@ export function mountInspector(root) {
     watch(["view", "chosen", "state", "pending"], () => {
         if (store.pending > 0) return;
         const { piece, edge, corner, seam } = selection.chosen;
-        draw(pattern(), { piece, edge, corner, seam });
+        draw(pattern(), { piece, edge, corner, seam }, proposals());
     });
 }
 

@@ -15,6 +15,7 @@ import { pieceElement, seamsByEdge } from "./drawing.js";
 import { arrange } from "./plane.js";
 import { mountInspector } from "./inspector.js";
 import { mountPrinting } from "./printing.js";
+import { proposals } from "./proposals.js";
 import { sewing } from "./sewing.js";
 
 /** What an arrow key moves, in millimetres. */
@@ -77,9 +78,9 @@ export function mountPattern(root) {
         spot.setAttribute("r", 6 * scale);
     }
 
-    const draw = whenChanged((pattern, reached) => {
+    const draw = whenChanged((pattern, reached, proposed) => {
         plane = arrange(pattern.pieces);
-        seams = seamsByEdge(pattern.seams);
+        seams = seamsByEdge(pattern.seams, proposed);
         replace(
             pieces,
             pattern.pieces.map((piece) =>
@@ -138,7 +139,7 @@ export function mountPattern(root) {
         const pattern = store.view?.pattern;
         none.hidden = Boolean(pattern);
         drawing.classList.toggle("gone", !pattern);
-        if (pattern) draw(pattern, selection.chosen.piece);
+        if (pattern) draw(pattern, selection.chosen.piece, proposals());
     };
     watch(["view", "chosen", "state"], redraw);
 

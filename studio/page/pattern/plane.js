@@ -3,6 +3,9 @@
 /** Space between pieces, in millimetres. */
 const GAP = 45;
 
+/** Space around all pieces, as a share of the longer side. */
+const RIM = 0.05;
+
 /** The form of the pane that the pieces are arranged for: its width to its height. */
 const ASPECT = 1.5;
 
@@ -50,5 +53,7 @@ function inRows(pieces, sizes, row) {
         deep = Math.max(deep, height);
         wide = Math.max(wide, x - GAP);
     });
-    return { box: [-GAP / 2, -GAP / 2, wide + GAP, y + deep + GAP], at };
+    // Names and handles stand out beyond the pieces.
+    const rim = Math.max(GAP / 2, RIM * Math.max(wide, y + deep));
+    return { box: [-rim, -rim, wide + 2 * rim, y + deep + 2 * rim], at };
 }

@@ -3,7 +3,7 @@
 import { h, replace } from "../dom/element.js";
 import { postJson } from "../server/requests.js";
 import { loadFiles } from "../server/live.js";
-import { store } from "../server/store.js";
+import { store, watch } from "../server/store.js";
 import { sayError, sayWord } from "../head/status.js";
 
 /** Formats with the stages that write them; the first that the program has is taken. */
@@ -59,6 +59,9 @@ export function mountPrinting() {
         event.stopPropagation();
         all.open = false;
         all.querySelector("summary").focus();
+    });
+    watch(["escape"], () => {
+        all.open = false;
     });
     document.addEventListener("pointerdown", (event) => {
         if (!all.contains(event.target)) all.open = false;

@@ -3,10 +3,13 @@
 import { h, replace } from "../dom/element.js";
 import { t, term } from "../words/words.js";
 import { edit } from "../server/edits.js";
+import { upload } from "../server/requests.js";
+import { sayError } from "../head/status.js";
+import { quote } from "../ron/ron.js";
 import { stagesOf, store, watch, whenChanged } from "../server/store.js";
 import { inCm, metres } from "../ron/lengths.js";
 import { choicesOf } from "../tools/card_types.js";
-import { entryOf, photo } from "./shown.js";
+import { entryOf, named, photo } from "./shown.js";
 
 const OBJECTS = ["BankCard", "A4", "Letter", "Ruler"];
 
@@ -59,7 +62,31 @@ function scale(name, width, object) {
         field,
         " cm",
         choice,
+        another(name),
     );
+}
+
+/** A button that takes another picture in the photo's place. */
+function another(name) {
+    const input = h("input", {
+        id: "photo-file",
+        type: "file",
+        class: "unseen",
+        accept: ".jpg,.jpeg,.png,.webp,.tif,.tiff",
+        "aria-label": t("field.fileOf", { name }),
+    });
+    input.addEventListener("change", async () => {
+        if (!input.files[0]) return;
+        try {
+            const file = await upload(input.files[0]);
+            edit(t("edit.photo", { name, file }), [
+                { set: { path: `photos.${name}.file`, value: quote(file) } },
+            ]);
+        } catch (error) {
+            sayError(error);
+        }
+    });
+    return [h("label", { class: "button", for: "photo-file", word: "photo.file" }), input];
 }
 
 function kinds(kindStages, chosen, choices) {
@@ -104,16 +131,16 @@ export function mountFacts(root) {
         if (details) details.open = open ?? false;
     });
     watch(["state", "cards", "view", "photo"], () => {
-        const now = photo();
-        if (!now) return;
+        const name = photo()?.name ?? named()[0];
+        if (!name) return;
         // The wearer is measured by the kind as well.
         const kindStages = [...stagesOf("style"), ...stagesOf("body")]
             .filter((stage) => paramOf(stage, "style"))
             .map(({ name, path, params }) => ({ name, path, style: params.style }));
         const param = kindStages[0] && paramOf(kindStages[0], "style");
         draw(
-            now.name,
-            entryOf(now.name),
+            name,
+            entryOf(name),
             kindStages,
             kindStages[0]?.style ?? param?.default ?? "Auto",
             param ? choicesOf(param) : [],

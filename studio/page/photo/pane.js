@@ -9,7 +9,8 @@ import { edgeLine, litEdges } from "../garment/edge_line.js";
 import { landmarks } from "./landmarks.js";
 import { strokes } from "./strokes.js";
 import { mountFacts } from "./facts.js";
-import { entryOf, photo, photoOf, photos, showPhoto } from "./shown.js";
+import { t } from "../words/words.js";
+import { entryOf, named, photo, photoOf, photos, showPhoto } from "./shown.js";
 
 /** The place of the garment at a point of the photo. */
 function spotAt(at) {
@@ -85,7 +86,7 @@ export function mountPhoto(root) {
     });
     const bar = h("div", { class: "bar", role: "toolbar", label: "photo.tools" });
     const facts = h("div", { class: "facts" });
-    const none = h("p", { class: "nothing", word: "photo.none" });
+    const none = h("p", { class: "nothing" });
     const which = h("span", { class: "bar-part" });
     const chooser = choosers(which, maskButton);
     const paint = strokes({ drawing, painted, place: zoom.place, scale: zoom.scale });
@@ -141,7 +142,8 @@ export function mountPhoto(root) {
         const now = photo();
         drawing.classList.toggle("gone", !now);
         none.hidden = Boolean(now);
-        facts.hidden = !now;
+        none.textContent = t(named().length > 0 ? "photo.unread" : "photo.none");
+        facts.hidden = !now && named().length === 0;
         chooser();
         if (!now) return;
         const mine = store.view.outlines.filter(({ panel }) => photoOf(panel) === now.name);

@@ -9,12 +9,17 @@ let chosen = null;
 export const photos = () =>
     [...(store.view?.photos ?? [])].sort((a, b) => (b.name === "front") - (a.name === "front"));
 
+/** Names of the photos that the file gives, read or not. */
+export const named = () => (tryRead(photosText())?.entries ?? []).map(([key]) => key);
+
+const photosText = () => store.state?.stages.find((stage) => stage.path === "photos")?.params.photos;
+
 /** The photo that is shown: the one that was chosen, else the first. */
 export const photo = () => photos().find((p) => p.name === chosen) ?? photos()[0];
 
 /** What the file says of a photo, as it is written there: {file, width, scale}; nothing of a mirror image. */
 export function entryOf(name) {
-    const text = store.state?.stages.find((stage) => stage.path === "photos")?.params.photos;
+    const text = photosText();
     const entry = tryRead(text)?.entries?.find(([key]) => key === name)?.[1];
     return entry?.fields && valuesOf(text, entry.fields);
 }

@@ -41,6 +41,10 @@ export function edit(words, changes, { draft = false } = {}) {
     });
 }
 
+/** Sews proposed seams of these names. */
+export const sewProposals = (words, seams) =>
+    inTurn((number) => postJson("/api/sew", { edit: number, words, seams }));
+
 // Whether there is something to undo is known to the program: the last edit may still be on its way here.
 export const undo = () => store.state && inTurn((number) => postJson("/api/undo", { edit: number }));
 export const redo = () => store.state && inTurn((number) => postJson("/api/redo", { edit: number }));
@@ -49,7 +53,8 @@ export async function save() {
     await queue;
     try {
         const { file } = await postJson("/api/save");
-        sayWord("saved.as", { file });
+        const faulty = store.state.faults.length > 0;
+        sayWord(faulty ? "saved.faults" : "saved.as", { file }, faulty ? "error" : "note");
     } catch (error) {
         sayError(error);
     }

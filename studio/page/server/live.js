@@ -55,6 +55,15 @@ const loadView = latest(async () => {
     tell("body");
 });
 
+/** Where the garment has come to while it is draped; nothing of another mesh than the one that is shown. */
+const loadMoving = latest(async () => {
+    const bytes = await getBytes("/api/moving");
+    const moving = bytes && readMesh(bytes);
+    if (!moving || moving.vertices !== store.garment?.vertices || !store.state.moving) return;
+    store.moving = moving.positions;
+    tell("moving");
+});
+
 const loadMeasures = latest(async () => {
     store.measures = await getJson("/api/measures").catch((error) => {
         if (error.status === 404) return null;
@@ -82,6 +91,7 @@ export async function loadBefore() {
 
 let textEdit = -1;
 let seenView = -1;
+let seenMoving = null;
 let seenRun = "";
 let followed = -1;
 
@@ -103,6 +113,10 @@ export function takeState(state) {
     if (state.view !== seenView) {
         seenView = state.view;
         loadView();
+    }
+    if (state.moving && state.moving !== seenMoving) {
+        seenMoving = state.moving;
+        loadMoving();
     }
     // A text with faults has no measures.
     if (state.project.edit !== followed && state.faults.length === 0) {

@@ -3,7 +3,7 @@
 const MAGIC = "TOILEG1\0";
 const KINDS = { f32: Float32Array, u32: Uint32Array };
 
-/** `{...head, positions, triangles, flat, photo_px, uv, strain}`; throws where the bytes are no such file. */
+/** `{...head, positions, triangles, flat, photo_px, uv, strain, pressure, distance}`; throws where the bytes are no such file. */
 export function readMesh(bytes) {
     const magic = new TextDecoder().decode(new Uint8Array(bytes, 0, MAGIC.length));
     if (magic !== MAGIC) throw new Error("the garment's file does not begin as one");
@@ -20,7 +20,7 @@ export function readMesh(bytes) {
     return mesh;
 }
 
-const WIDTH = { positions: 3, triangles: 3, flat: 2, photo_px: 2, uv: 2, strain: 1, pressure: 1 };
+const WIDTH = { positions: 3, triangles: 3, flat: 2, photo_px: 2, uv: 2, strain: 1, pressure: 1, distance: 1 };
 
 function lengthOf(name, count, head) {
     const width = WIDTH[name] ?? 1;
@@ -69,5 +69,7 @@ export function spotOf(mesh, triangle, shares) {
         flat: mean(mesh.flat, 2),
         position: mean(mesh.positions, 3),
         strain: perTriangle ? mesh.strain[triangle] : (mean(mesh.strain, 1)?.[0] ?? null),
+        pressure: mean(mesh.pressure, 1)?.[0] ?? null,
+        distance: mean(mesh.distance, 1)?.[0] ?? null,
     };
 }

@@ -15,6 +15,8 @@ export const store = {
     garment: null,
     before: null,
     body: null,
+    /** Places of the garment's vertices while it is draped. */
+    moving: null,
     /** Cards of all stages by name. */
     cards: new Map(),
     measures: null,
@@ -24,6 +26,8 @@ export const store = {
     connected: true,
     /** Whether the program does not know this page any more. */
     refused: false,
+    /** Whether the begin is shown over the project. */
+    beginsAnew: false,
     /** Edits of this page that are not answered yet. */
     pending: 0,
 };

@@ -4,6 +4,8 @@
 import { h } from "../dom/element.js";
 import { t } from "../words/words.js";
 import { edit } from "../server/edits.js";
+import { upload } from "../server/requests.js";
+import { sayError } from "../head/status.js";
 import { quote, tryRead } from "../ron/ron.js";
 import { inCm, inMm, lengthLike, metres } from "../ron/lengths.js";
 import { carries, choicesOf, kindOf, mayBeNone, namesIn, written } from "./card_types.js";
@@ -141,6 +143,31 @@ function textField(param, value, { id, label }, take) {
     return field;
 }
 
+/** A text that names a file of the project's folder, and a button that brings one there. */
+function fileField(param, value, { id, label }, take) {
+    const input = h("input", {
+        id: `${id}-file`,
+        type: "file",
+        class: "unseen",
+        "aria-label": t("field.fileOf", { name: label }),
+    });
+    input.addEventListener("change", async () => {
+        if (!input.files[0]) return;
+        try {
+            take(quote(await upload(input.files[0])));
+        } catch (error) {
+            sayError(error);
+        }
+    });
+    return h(
+        "span",
+        { class: "file" },
+        textField(param, value, { id, label }, take),
+        h("label", { class: "button", for: `${id}-file`, word: "field.file" }),
+        input,
+    );
+}
+
 function switchField(param, value, { id, label }, take) {
     const box = h("input", {
         id,
@@ -164,7 +191,7 @@ export function parameter(stage, card, param) {
             { set: { path, value: next } },
         ]);
     const names = namesIn(param, card);
-    const kind = names.length > 0 ? "names" : kindOf(param);
+    const kind = names.length > 0 ? "names" : param.file ? "file" : kindOf(param);
     const field = {
         switch: () => switchField(param, value, { id, label }, take),
         choice: () => choiceField(param, value, { id, label }, take),
@@ -172,6 +199,7 @@ export function parameter(stage, card, param) {
         length: () => lengthField(param, value, { id, label }, take),
         number: () => numberField(param, value, { id, label }, take),
         whole: () => numberField(param, value, { id, label }, take),
+        file: () => fileField(param, value, { id, label }, take),
         text: () => textField(param, value, { id, label }, take),
     }[kind]();
     const reset =

@@ -4,7 +4,7 @@ import { h, replace } from "../dom/element.js";
 import { t } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { stagesOf, store, watch, whenChanged } from "../server/store.js";
-import { quote } from "../ron/ron.js";
+import { quote, tryRead } from "../ron/ron.js";
 import { inCm } from "../ron/lengths.js";
 import { namesIn } from "./card_types.js";
 import { parameter, slider } from "./fields.js";
@@ -37,13 +37,17 @@ function size(value) {
     ];
 }
 
-function sizes(all) {
+/** The size that the body has, as the file gives it; "" where it goes by measures. */
+const chosenSize = () => tryRead(body()?.params.size)?.value ?? "";
+
+function sizes(all, now) {
     const choice = h(
         "select",
         { id: "size", "data-key": "size" },
         h("option", { value: "" }, t("wearer.bySize")),
         all.map((value) => h("option", { value }, value)),
     );
+    choice.value = all.includes(now) ? now : "";
     choice.addEventListener(
         "change",
         () => choice.value && edit(t("edit.size", { size: choice.value }), () => size(choice.value)),
@@ -57,6 +61,8 @@ function measures(list) {
         { class: "measures" },
         list.map(({ name, path, value_m: value, min_m: min, max_m: max, iso }) => {
             const id = `measure-${name}`;
+            // A body without measures of its own becomes a mannequin, within a mannequin's limits.
+            const limits = store.cards.get("Mannequin")?.params.find((param) => param.name === name);
             const label =
                 t(`measure.${name}`) === `measure.${name}` ? name.replaceAll("_", " ") : t(`measure.${name}`);
             return h(
@@ -68,8 +74,8 @@ function measures(list) {
                     label,
                     // A measure that is not known yet has an empty field.
                     value: value === null ? "" : Number((100 * value).toFixed(1)),
-                    min: Math.round(100 * min),
-                    max: Math.round(100 * max),
+                    min: Math.round(100 * (min ?? limits?.min)),
+                    max: Math.round(100 * (max ?? limits?.max)),
                     step: 0.5,
                     unit: "cm",
                     take: (next) =>
@@ -120,6 +126,29 @@ const fabricName = (name) => {
     return t(key) === key ? name : t(key);
 };
 
+/** A body of a photo is fitted to the garment: a mannequin in its place has measures. */
+function noMeasures() {
+    const stage = body();
+    return [
+        h("p", { class: "hint", word: "wearer.noMeasures" }),
+        stage?.path &&
+            stage.name !== "Mannequin" &&
+            store.cards.has("Mannequin") &&
+            h(
+                "p",
+                { class: "choices" },
+                h("button", {
+                    id: "mannequin",
+                    word: "wearer.mannequin",
+                    onclick: () =>
+                        edit(t("edit.swap", { from: stage.name, to: "Mannequin" }), [
+                            { swap: { stage: stage.id, with: "Mannequin()" } },
+                        ]),
+                }),
+            ),
+    ];
+}
+
 export function mountWearer(root) {
     const bodyPart = h("div");
     const fabricPart = h("div");
@@ -133,12 +162,17 @@ export function mountWearer(root) {
             fabricPart,
         ),
     );
-    const drawBody = whenChanged((found) =>
+    const drawBody = whenChanged((found, size) =>
         replace(
             bodyPart,
             found && found.measures.length > 0
-                ? [found.sizes.length > 0 && sizes(found.sizes), measures(found.measures)]
-                : h("p", { class: "hint", word: "wearer.noMeasures" }),
+                ? [
+                      found.sizes.length > 0 && sizes(found.sizes, size),
+                      found.measures.every(({ path }) => !path) &&
+                          h("p", { class: "hint", word: "wearer.fitted" }),
+                      measures(found.measures),
+                  ]
+                : noMeasures(),
         ),
     );
     const drawFabric = whenChanged((stage, known) =>
@@ -151,7 +185,7 @@ export function mountWearer(root) {
     );
     watch(["measures", "state", "cards", "pending"], () => {
         if (!store.state || store.pending > 0) return;
-        drawBody(store.measures);
+        drawBody(store.measures, chosenSize(), store.cards.size > 0);
         const stage = fabric();
         drawFabric(
             stage && { id: stage.id, name: stage.name, path: stage.path, params: stage.params },

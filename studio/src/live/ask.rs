@@ -33,6 +33,8 @@ impl RunKind {
 #[derive(Debug, Clone)]
 pub(crate) struct RunAsk {
     pub(crate) text: String,
+    /// Its number.
+    pub(crate) edit: u64,
     pub(crate) file: String,
     /// The folder that its paths are relative to.
     pub(crate) base: PathBuf,

@@ -21,7 +21,7 @@ use state::{LiveState, RunFault, RunStatus};
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use toile_core::artifact::{Kind, OutputFile};
+use toile_core::artifact::{Kind, OutputFile, Point3};
 use toile_core::{Cancel, ErrorCode, Event, Listener, Registry, StageError, panics};
 use toile_pipeline::cache::Cache;
 use toile_pipeline::{Pipeline, RunError, RunOptions, RunResult, RunWatch, WatchedStage, run, write_files};
@@ -140,9 +140,16 @@ fn next(desk: &RunDesk) -> Option<(RunAsk, Cancel)> {
     }
 }
 
+/// The least time between two looks at a garment that moves: a page draws it in less.
+const LOOK: Duration = Duration::from_millis(120);
+
 /// Hears what goes on and passes it to the desk.
 #[derive(Debug)]
-struct DeskWatch(Arc<RunDesk>);
+struct DeskWatch {
+    desk: Arc<RunDesk>,
+    /// When the garment was looked at last.
+    looked: Mutex<Instant>,
+}
 
 impl RunWatch for DeskWatch {
     fn kinds(&self) -> &[Kind] {
@@ -150,15 +157,29 @@ impl RunWatch for DeskWatch {
     }
 
     fn done(&self, stage: &WatchedStage<'_>) {
-        self.0.state().take(stage);
-        self.0.pulse.beat();
+        self.desk.state().take(stage);
+        self.desk.pulse.beat();
     }
 }
 
 impl Listener for DeskWatch {
     fn event(&self, stage: &str, entry: &str, event: &Event) {
-        self.0.state().hear(stage, entry, event);
-        self.0.pulse.beat();
+        self.desk.state().hear(stage, entry, event);
+        self.desk.pulse.beat();
+    }
+
+    fn looks_on(&self) -> bool {
+        let mut looked = self.looked.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due = looked.elapsed() >= LOOK && self.desk.pulse.is_listened_to();
+        if is_due {
+            *looked = Instant::now();
+        }
+        is_due
+    }
+
+    fn moves(&self, _: &str, positions: Vec<Point3>) {
+        self.desk.state().moves(positions);
+        self.desk.pulse.beat();
     }
 }
 
@@ -168,7 +189,8 @@ fn attempt(desk: &Arc<RunDesk>, tools: &RunTools, ask: &RunAsk, kind: &RunKind, 
         let mut state = desk.state();
         let number = state.run.number + 1;
         let (kind, begun) = (kind.word(), Some(Instant::now()));
-        state.run = RunStatus { number, kind, state: "running", begun, ..RunStatus::default() };
+        let edit = ask.edit;
+        state.run = RunStatus { number, edit, kind, state: "running", begun, ..RunStatus::default() };
         state.stages.clear();
         state.break_off();
     }
@@ -226,7 +248,7 @@ fn staged(
     kind: &RunKind,
     cancel: &Cancel,
 ) -> Result<RunResult, RunError> {
-    let watch = Arc::new(DeskWatch(desk.clone()));
+    let watch = Arc::new(DeskWatch { desk: desk.clone(), looked: Mutex::new(Instant::now()) });
     let options = RunOptions {
         cache: tools.cache.clone(),
         also: if matches!(kind, RunKind::Draft(_)) { ends(pipeline) } else { Vec::new() },

@@ -1,15 +1,16 @@
 //! What runs have made so far, for a page to show.
 
+use crate::show::proposals::ReadPattern;
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::artifact::{
-    Artifact, Body, Figures, Garment, Kind, Mask, Model, Outline, Pattern, Photo, SewingPlan,
+    Artifact, Body, Collider, Figures, Garment, Kind, Mask, Model, Outline, Pattern, Photo, SewingPlan,
 };
 use toile_core::{ArtifactType, PortValue};
 
 /// The kinds that are shown.
-pub(crate) const KINDS: [Kind; 9] = [
+pub(crate) const KINDS: [Kind; 10] = [
     Photo::KIND,
     Mask::KIND,
     Outline::KIND,
@@ -18,6 +19,7 @@ pub(crate) const KINDS: [Kind; 9] = [
     Garment::KIND,
     Model::KIND,
     Body::KIND,
+    Collider::KIND,
     Figures::KIND,
 ];
 
@@ -31,11 +33,16 @@ pub(crate) struct ShownArtifacts {
     pub(crate) masks: NamedSet<Mask>,
     pub(crate) outlines: NamedSet<Outline>,
     pub(crate) plan: Option<Arc<SewingPlan>>,
+    /// As it was read.
+    pub(crate) read: Option<Arc<ReadPattern>>,
+    /// As the last stage left it.
     pub(crate) pattern: Option<Arc<Pattern>>,
     pub(crate) garment: Option<Arc<Garment>>,
     /// The garment's textures; none before it has any.
     pub(crate) model: Option<Arc<Model>>,
     pub(crate) body: Option<Arc<Body>>,
+    /// What the garment lies on.
+    pub(crate) collider: Option<Arc<Collider>>,
     pub(crate) figures: Option<Arc<Figures>>,
 }
 
@@ -58,6 +65,9 @@ impl ShownArtifacts {
             self.plan = one(value);
         } else if kind == Pattern::KIND {
             self.pattern = one(value);
+            if self.read.is_none() {
+                self.read = self.pattern.clone().map(|pattern| Arc::new(ReadPattern::new(pattern)));
+            }
         } else if kind == Garment::KIND {
             self.garment = one(value);
             self.model = None;
@@ -65,6 +75,8 @@ impl ShownArtifacts {
             self.model = one(value);
         } else if kind == Body::KIND {
             self.body = one(value);
+        } else if kind == Collider::KIND {
+            self.collider = one(value);
         } else if kind == Figures::KIND {
             self.figures = one(value);
         } else {
@@ -87,10 +99,12 @@ impl ShownArtifacts {
             masks: either(&self.masks, &before.masks),
             outlines: either(&self.outlines, &before.outlines),
             plan: self.plan.clone().or_else(|| before.plan.clone()),
+            read: self.read.clone().or_else(|| before.read.clone()),
             pattern: self.pattern.clone().or_else(|| before.pattern.clone()),
             garment,
             model,
             body: self.body.clone().or_else(|| before.body.clone()),
+            collider: self.collider.clone().or_else(|| before.collider.clone()),
             figures: self.figures.clone().or_else(|| before.figures.clone()),
         }
     }

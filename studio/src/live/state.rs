@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
-use toile_core::artifact::Garment;
+use toile_core::artifact::{Garment, Point3};
 use toile_core::{Cancel, Event};
 use toile_pipeline::WatchedStage;
 
@@ -69,6 +69,8 @@ pub(crate) struct ProgressNote {
 #[derive(Debug, Clone)]
 pub(crate) struct RunStatus {
     pub(crate) number: u64,
+    /// The number of the text that it runs.
+    pub(crate) edit: u64,
     pub(crate) kind: &'static str,
     pub(crate) state: &'static str,
     pub(crate) begun: Option<Instant>,
@@ -83,6 +85,7 @@ impl Default for RunStatus {
     fn default() -> Self {
         RunStatus {
             number: 0,
+            edit: 0,
             kind: "none",
             state: "none",
             begun: None,
@@ -100,6 +103,7 @@ impl RunStatus {
         let shortfall = |(code, message): &(String, String)| json!({ "code": code, "message": message });
         json!({
             "number": self.number,
+            "edit": self.edit,
             "kind": self.kind,
             "state": self.state,
             "seconds": seconds,
@@ -121,6 +125,10 @@ pub(crate) struct LiveState {
     pub(crate) run: RunStatus,
     /// By id.
     pub(crate) stages: BTreeMap<String, StageStatus>,
+    /// Where the vertices of the garment have come to while it is draped, metres; none while it is not.
+    pub(crate) moving: Option<Arc<Vec<Point3>>>,
+    /// Grows with it.
+    pub(crate) moving_number: u64,
     /// What the present run has made.
     pub(super) fresh: ShownArtifacts,
     /// What the runs before it have left.
@@ -142,8 +150,15 @@ impl LiveState {
         self.fresh.over(&self.kept)
     }
 
+    /// Takes note of where a garment has come to.
+    pub(super) fn moves(&mut self, positions: Vec<Point3>) {
+        self.moving = Some(Arc::new(positions));
+        self.moving_number += 1;
+    }
+
     /// Takes note of a stage that is done.
     pub(super) fn take(&mut self, stage: &WatchedStage<'_>) {
+        self.moving = None;
         if self.fresh.take(&stage.outputs) {
             self.view += 1;
         }
@@ -197,6 +212,7 @@ impl LiveState {
 
     /// The present run was broken off: what it made stays beside what was there.
     pub(super) fn break_off(&mut self) {
+        self.moving = None;
         self.kept = self.shown();
         self.fresh = ShownArtifacts::default();
     }

@@ -23,9 +23,27 @@ pub(crate) struct BeginWith {
     /// A pattern file in the project's folder.
     #[serde(default)]
     pub(crate) pattern: Option<String>,
+    /// The measurements of a pattern that is drafted to measure, in the project's folder.
+    #[serde(default)]
+    pub(crate) measurements: Option<String>,
     /// A sample.
     #[serde(default)]
     pub(crate) sample: Option<String>,
+    /// Whether it may take the place of the project's pipeline, as an edit.
+    #[serde(default)]
+    pub(crate) anew: bool,
+}
+
+impl BeginWith {
+    /// The files in the project's folder that it names.
+    pub(super) fn files(&self) -> impl Iterator<Item = &String> {
+        self.photo.iter().chain(&self.pattern).chain(&self.measurements)
+    }
+
+    /// What it begins with, for the words of an edit.
+    pub(super) fn name(&self) -> &str {
+        self.files().next().or(self.sample.as_ref()).map_or("", String::as_str)
+    }
 }
 
 /// A pipeline with its inputs.
@@ -102,10 +120,14 @@ const SAMPLES: [ShippedSample; 5] = [
 ///
 /// Errors: nothing is named, or what there is not.
 pub(super) fn beginning(with: &BeginWith, registry: &Registry) -> Result<Beginning, StudioFault> {
+    let measurements = with.measurements.as_deref();
+    let bare = with.width.is_none() && measurements.is_none();
     match (&with.photo, &with.pattern, &with.sample) {
-        (Some(photo), None, None) => of_photo(photo, with.width.as_deref(), registry),
-        (None, Some(pattern), None) if with.width.is_none() => of_pattern(pattern, registry),
-        (None, None, Some(name)) if with.width.is_none() => sample(name),
+        (Some(photo), None, None) if measurements.is_none() => {
+            of_photo(photo, with.width.as_deref(), registry)
+        }
+        (None, Some(pattern), None) if with.width.is_none() => of_pattern(pattern, measurements, registry),
+        (None, None, Some(name)) if bare => sample(name),
         _ => Err(StudioFault::malformed("a project begins with a photo, a pattern or a sample")
             .hint("{\"photo\": \"tee.jpg\", \"width\": \"76 cm\"}")),
     }
@@ -137,15 +159,27 @@ fn of_photo(photo: &str, width: Option<&str>, registry: &Registry) -> Result<Beg
     made(PHOTO, registry, &edits)
 }
 
-fn of_pattern(pattern: &str, registry: &Registry) -> Result<Beginning, StudioFault> {
+fn of_pattern(
+    pattern: &str,
+    measurements: Option<&str>,
+    registry: &Registry,
+) -> Result<Beginning, StudioFault> {
     check_name(pattern)?;
     let ending = pattern.rsplit('.').next().unwrap_or("").to_lowercase();
     let file = ron_text(&pattern);
-    let reader = match ending.as_str() {
-        "json" => format!("GarmentCode(file: {file})"),
-        "dxf" => format!("DxfPattern(file: {file})"),
-        "svg" => format!("SvgPattern(file: {file})"),
-        "sm2d" | "val" => format!("SeamlyPattern(file: {file})"),
+    let reader = match (ending.as_str(), measurements) {
+        ("json", None) => format!("GarmentCode(file: {file})"),
+        ("dxf", None) => format!("DxfPattern(file: {file})"),
+        ("svg", None) => format!("SvgPattern(file: {file})"),
+        ("sm2d" | "val", None) => format!("SeamlyPattern(file: {file})"),
+        ("sm2d" | "val", Some(measurements)) => {
+            check_name(measurements)?;
+            format!("SeamlyPattern(file: {file}, measurements: {})", ron_text(&measurements))
+        }
+        ("json" | "dxf" | "svg", Some(_)) => {
+            let message = format!("\"{pattern}\" is not drafted to measure: it takes no measurements");
+            return Err(StudioFault::malformed(message).hint("give it alone"));
+        }
         _ => {
             let message = format!("\"{pattern}\" is no pattern file that is known by its ending");
             return Err(StudioFault::malformed(message).hint("json, dxf, svg, sm2d or val"));

@@ -188,22 +188,27 @@ impl StudioProject {
         Ok(open.name.clone())
     }
 
-    /// Writes the pipeline that a project begins with, and its inputs; gives the new number.
+    /// Writes the pipeline that a project begins with, and its inputs; gives the new number. Where
+    /// it begins anew, the pipeline takes the place of the present text, which [`Self::undo`] brings
+    /// back.
     ///
-    /// Errors: `exists` where there is one; what there is not; what the system says.
+    /// Errors: `exists` where there is one and it is not to begin anew; what there is not; what the
+    /// system says.
     pub(crate) fn begin(&mut self, with: &BeginWith) -> Result<u64, StudioFault> {
         let path = self.folder.join(PIPELINE);
-        if self.open.is_some() || path.exists() {
+        let is_first = self.open.is_none();
+        if if is_first { path.exists() } else { !with.anew } {
             let message = "the project has a pipeline already";
             return Err(StudioFault::new("exists", message).hint("begin another in an empty folder"));
         }
         let begun = beginning(with, &self.registry)?;
-        if let Some(file) = with.photo.as_ref().or(with.pattern.as_ref())
-            && !self.folder.join(file).is_file()
-        {
+        if let Some(file) = with.files().find(|file| !self.folder.join(file).is_file()) {
             return Err(StudioFault::not_found(format!("the project has no file \"{file}\"")));
         }
-        let mut files = vec![OutputFile::new(PIPELINE, begun.text.into_bytes())];
+        let mut files = Vec::new();
+        if is_first {
+            files.push(OutputFile::new(PIPELINE, begun.text.clone().into_bytes()));
+        }
         for (name, bytes) in begun.inputs {
             // A file of that name may be the user's.
             match std::fs::read(self.folder.join(name)) {
@@ -216,6 +221,10 @@ impl StudioProject {
             }
         }
         write_files(&self.folder, &files).map_err(|e| StudioFault::new("file", e.message))?;
+        if !is_first {
+            let words = format!("begin with {}", with.name());
+            return self.edit(self.edit, &words, &[StudioChange::Text(begun.text)], true);
+        }
         self.take_up(PIPELINE)?;
         Ok(self.edit)
     }

@@ -4,7 +4,7 @@ use crate::fault::FaultPlace;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use toile_core::{Card, Feed, Node, Registry};
+use toile_core::{Card, Feed, Node, Registry, Role};
 use toile_pipeline::{Faults, Pipeline, add_implicit, fields_of, load};
 
 /// A stage as a page lists it.
@@ -19,6 +19,9 @@ pub(crate) struct StageLine {
     pub(crate) params: BTreeMap<String, String>,
     /// The stages that it reads from.
     pub(crate) made_by: Vec<String>,
+    /// Whether it reads a pattern and takes a file of seams for it.
+    #[serde(skip)]
+    takes_seams: bool,
 }
 
 /// The body's stage, for its measures.
@@ -75,6 +78,14 @@ impl CheckedText {
             .collect()
     }
 
+    /// The path by which the reader of the pattern is given a file of seams; none where it takes none
+    /// or has one.
+    pub(crate) fn seams_to_give(&self) -> Option<String> {
+        let is_empty = |s: &&StageLine| s.params.get("seams").is_none_or(|text| text == "\"\"");
+        let reader = self.stages.iter().filter(|s| s.takes_seams).find(is_empty)?;
+        Some(format!("{}.seams", reader.path.as_ref()?))
+    }
+
     /// Whether it can be run.
     pub(crate) fn runs(&self) -> bool {
         self.faults.is_empty()
@@ -113,6 +124,7 @@ fn lines(pipeline: &Pipeline) -> Vec<StageLine> {
             path: pipeline.path_of(node),
             params: given(pipeline, node),
             made_by,
+            takes_seams: node.card.role == Role::Reader && node.card.params.iter().any(|p| p.name == "seams"),
         }
     };
     pipeline.nodes.iter().map(line).collect()

@@ -23,12 +23,12 @@ const MESH: &str = "application/octet-stream";
 const SCALE: HeaderName = HeaderName::from_static("x-scale");
 
 /// Requests by POST.
-const POSTS: [&str; 9] = ["edit", "undo", "redo", "save", "run", "stop", "upload", "begin", "print"];
+const POSTS: [&str; 10] = ["edit", "sew", "undo", "redo", "save", "run", "stop", "upload", "begin", "print"];
 
 /// Requests by GET; some go on with a name behind `/`.
-const GETS: [&str; 13] = [
-    "state", "events", "cards", "photo", "mask", "view", "garment", "before", "body", "texture", "out",
-    "measures", "trade",
+const GETS: [&str; 14] = [
+    "state", "events", "cards", "photo", "mask", "view", "garment", "moving", "before", "body", "texture",
+    "out", "measures", "trade",
 ];
 
 /// Answers a request that the guard has let in.
@@ -96,6 +96,7 @@ fn get(studio: &Studio, what: &str, name: &str) -> Result<HttpAnswer, StudioFaul
         ("cards", "") => Ok(bytes("application/json", studio.cards().to_owned())),
         ("view", "") => Ok(as_json(&studio.view())),
         ("garment", "") => Ok(bytes(MESH, studio.garment()?.to_vec())),
+        ("moving", "") => Ok(bytes(MESH, studio.moving()?)),
         ("before", "") => Ok(bytes(MESH, studio.before()?)),
         ("body", "") => Ok(bytes(MESH, studio.body()?)),
         ("out", "") => Ok(as_json(&studio.written())),
@@ -114,6 +115,15 @@ struct EditForm {
     changes: Vec<StudioChange>,
     #[serde(default)]
     draft: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SewForm {
+    edit: u64,
+    #[serde(default)]
+    words: String,
+    seams: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -143,6 +153,10 @@ async fn post(studio: Arc<Studio>, what: &str, request: Request<Incoming>) -> Ht
         "edit" => {
             let edit = |s: &Studio, f: EditForm| s.edit(f.edit, &f.words, &f.changes, f.draft);
             formed(studio, request, move |s, f| number(edit(s, f)?)).await
+        }
+        "sew" => {
+            let sew = |s: &Studio, f: SewForm| s.sew(f.edit, &f.words, &f.seams);
+            formed(studio, request, move |s, f| number(sew(s, f)?)).await
         }
         "undo" => formed(studio, request, |s, f: NumberedForm| number(s.undo(f.edit)?)).await,
         "redo" => formed(studio, request, |s, f: NumberedForm| number(s.redo(f.edit)?)).await,

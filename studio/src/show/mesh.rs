@@ -6,13 +6,17 @@
 use super::of_panel;
 use crate::live::shown::ShownArtifacts;
 use serde_json::{Map, Value, json};
-use toile_core::artifact::{Body, Garment, GarmentPanel, Model, Point3};
+use toile_core::artifact::{Body, Collider, Garment, GarmentPanel, Model, Point3};
 use toile_geometry::cloth_tree::ClothTree;
+use toile_output::fit::pressures;
 
 const MAGIC: &[u8; 8] = b"TOILEG1\0";
 
 /// Sewn vertices farther apart than this are an open seam, metres.
 const OPEN: f64 = 2e-3;
+
+/// Distances from the body are told up to this, metres.
+const FAR: f64 = 0.25;
 
 /// Colours of panels that are told apart.
 const COLOURS: [[u8; 3]; 8] = [
@@ -64,7 +68,7 @@ pub(crate) fn garment(garment: &Garment, shown: &ShownArtifacts) -> Vec<u8> {
         let none = if p.photo_px.is_empty() { p.vertices.len() } else { 0 };
         p.photo_px.iter().flat_map(|px| [px.x, px.y]).chain(std::iter::repeat_n(f64::NAN, 2 * none))
     });
-    let arrays = vec![
+    let mut arrays = vec![
         positions(&garment.positions),
         MeshArray::indices("triangles", garment.triangles.iter().flatten().copied()),
         MeshArray::floats("flat", garment.rest.iter().flat_map(|p| [p.x, p.y])),
@@ -72,6 +76,12 @@ pub(crate) fn garment(garment: &Garment, shown: &ShownArtifacts) -> Vec<u8> {
         MeshArray::floats("uv", dressed.iter().flat_map(|look| look.uv.iter().flatten().copied())),
         MeshArray::floats("strain", strains(garment).into_iter()),
     ];
+    if let Some(collider) = shown.collider.as_deref().filter(|_| garment.status.converged) {
+        arrays.push(MeshArray::floats("distance", distances(garment, collider).into_iter()));
+        if let Ok(pressures) = pressures(garment, collider) {
+            arrays.push(MeshArray::floats("pressure", pressures.into_iter().map(|p| p.unwrap_or(0.0))));
+        }
+    }
     let mut head = Map::new();
     head.insert("vertices".into(), json!(garment.positions.len()));
     head.insert("triangles".into(), json!(garment.triangles.len()));
@@ -80,6 +90,13 @@ pub(crate) fn garment(garment: &Garment, shown: &ShownArtifacts) -> Vec<u8> {
     head.insert("open_seams".into(), json!(open_seams(garment)));
     head.insert("crossings".into(), json!(crossings(garment)));
     packed(head, &arrays)
+}
+
+/// Places of vertices by themselves.
+pub(crate) fn places(of: &[Point3]) -> Vec<u8> {
+    let mut head = Map::new();
+    head.insert("vertices".into(), json!(of.len()));
+    packed(head, &[positions(of)])
 }
 
 /// A body.
@@ -143,6 +160,15 @@ fn strains(garment: &Garment) -> Vec<f64> {
         }
     }
     sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { 0.0 }).collect()
+}
+
+/// How far each vertex is from the skin, metres; [`FAR`] at most.
+fn distances(garment: &Garment, collider: &Collider) -> Vec<f64> {
+    let mut near = Vec::new();
+    collider.scheme.body_contacts(&garment.positions, FAR, &mut near);
+    let mut all = vec![FAR; garment.positions.len()];
+    near.iter().for_each(|contact| all[contact.vertex as usize] = contact.distance);
+    all
 }
 
 fn open_seams(garment: &Garment) -> Vec<[u32; 2]> {

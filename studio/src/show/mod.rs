@@ -1,13 +1,14 @@
 //! Artifacts as a page takes them: JSON, pictures, meshes.
 //!
-//! - `view`: photos, outlines, figures; `pattern`: pieces and seams; `mesh`: garment and body as
-//!   flat arrays; `pictures`: photos, masks, textures; `measures`: the body's; `trade`: the
-//!   qualities.
+//! - `view`: photos, outlines, figures; `pattern`: pieces and seams; `proposals`: seams that are
+//!   proposed; `mesh`: garment and body as flat arrays; `pictures`: photos, masks, textures;
+//!   `measures`: the body's; `trade`: the qualities.
 
 pub(crate) mod measures;
 pub(crate) mod mesh;
 mod pattern;
 pub(crate) mod pictures;
+pub(crate) mod proposals;
 pub(crate) mod trade;
 pub(crate) mod view;
 

@@ -9,8 +9,9 @@ use toile_core::artifact::{Figures, Outline, Photo, Point2};
 /// The photo whose landmarks are named without it.
 const FRONT: &str = "front";
 
-/// The view with its number; `given` are the names of landmarks that the text gives.
-pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>) -> Value {
+/// The view with its number; `given` are the names of landmarks that the text gives, `proposes` says
+/// whether seams may be proposed.
+pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>, proposes: bool) -> Value {
     let pieces = match &shown.pattern {
         Some(pattern) => Some((pieces_of_pattern(pattern, &shown.photos), seams_of_pattern(pattern, shown))),
         None if shown.outlines.values().any(|o| !o.edges.is_empty()) => {
@@ -19,6 +20,7 @@ pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>
         None => None,
     };
     let figures = shown.figures.as_deref();
+    let read = shown.read.as_deref().filter(|_| proposes);
     let girth = |(level, g): (&String, &toile_core::artifact::GirthFigures)| json!({ "level": level, "cloth_m": g.cloth_m, "body_m": g.body_m });
     let missed = figures.iter().flat_map(|f| &f.shortfalls);
     json!({
@@ -26,6 +28,7 @@ pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>
         "photos": shown.photos.iter().map(|(name, photo)| photo_json(name, photo, shown, given)).collect::<Vec<_>>(),
         "outlines": shown.outlines.iter().filter_map(|(name, o)| outline(name, o)).collect::<Vec<_>>(),
         "pattern": pieces.map(|(pieces, seams)| json!({ "pieces": pieces, "seams": seams })),
+        "proposals": read.map_or(json!([]), |read| read.view(shown.pattern.as_deref())),
         "garment": shown.garment.is_some(),
         "body": shown.body.is_some(),
         "figures": figures.map(figures_json),

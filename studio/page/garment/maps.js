@@ -13,6 +13,15 @@ const VIRIDIS = [
     [170, 220, 50],
     [253, 231, 37],
 ];
+/** Maps with how their figures are written: a share, pascals, metres. */
+const FIGURES = {
+    strain: (value) => `${(100 * value).toFixed(1)} %`,
+    pressure: (value) => `${value.toFixed(value < 10 ? 1 : 0)} Pa`,
+    distance: (value) => `${(1000 * value).toFixed(value < 0.01 ? 1 : 0)} mm`,
+};
+export const isMap = (looks) => looks in FIGURES;
+export const figureOf = (looks, value) => FIGURES[looks](value);
+
 const ROUND = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1];
 
 export function mapColour(share) {
