@@ -170,6 +170,13 @@ fn refused(e: &StageError, json: bool, streams: &mut Streams<'_>) -> u8 {
     exit::INVALID
 }
 
+/// A batch that disk or store keep from going on. That may pass, so it is no fault of its input:
+/// whoever starts it again should.
+fn broken_off(e: &StageError, json: bool, streams: &mut Streams<'_>) -> u8 {
+    refused(e, json, streams);
+    exit::STOPPED
+}
+
 /// Runs what is to be run, and writes what all shares write together.
 fn planned(
     args: &BatchArgs,
@@ -226,16 +233,23 @@ fn planned(
     let ran = pool::run(&program, plan.run.iter().copied(), &limits, &cancel, &mut keeper);
     interrupt::begin_writing();
     let sent = mirror.end_sending(&cancel);
-    let tallies = summary::write(folder.root(), &plan, args.shard, mirror, sent == Ok(0))?;
-    let unsent = sent?;
+    let tallies = match summary::write(folder.root(), &plan, args.shard, mirror, sent == Ok(0)) {
+        Ok(tallies) => tallies,
+        Err(e) => return Ok(broken_off(&e, args.json, streams)),
+    };
+    let unsent = match sent {
+        Ok(unsent) => unsent,
+        Err(e) => return Ok(broken_off(&e, args.json, streams)),
+    };
     if unsent > 0 {
         streams.warn(format!("{} not sent yet; the next start sends them", counted(unsent)));
     }
     if let Err(why) = ran {
-        return Err(StageError::invalid(why)
-            .hint("what was done before is kept: start the batch again, and it goes on from there"));
+        let e = StageError::invalid(why)
+            .hint("what was done before is kept: start the batch again, and it goes on from there");
+        return Ok(broken_off(&e, args.json, streams));
     }
-    let is_stopped = cancel.is_cancelled();
+    let is_stopped = cancel.is_cancelled() || unsent > 0;
     tell_end(args, &mirror.results_in_words(folder.root()), &tallies, is_stopped, streams);
     if let (Some(forecast), false) = (forecast, is_stopped) {
         let took = quality::in_words(started.elapsed().as_secs_f64());

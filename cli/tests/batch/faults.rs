@@ -176,7 +176,7 @@ fn a_full_disk_stops_the_batch_and_nothing_is_lost() {
         .output()
         .unwrap();
     let (code, _, err) = words(&full);
-    assert_eq!(code, Some(3), "{err}");
+    assert_eq!(code, Some(5), "{err}");
     let told = err.lines().find(|l| l.starts_with("error: ")).unwrap();
     assert!(told.starts_with("error: the garment \"g1\" cannot be kept: cannot write \""), "{told}");
     assert!(
