@@ -4,6 +4,7 @@
 import { h, replace } from "./dom/element.js";
 import { store, watch } from "./server/store.js";
 import { mountPhoto } from "./photo/pane.js";
+import { hasPhotos } from "./photo/shown.js";
 import { mountPattern } from "./pattern/pane.js";
 import { mountGarment } from "./garment/pane.js";
 import { mountStages } from "./tools/stages.js";
@@ -52,8 +53,9 @@ function alongTabs(event) {
 
 function apply() {
     const open = narrow.matches ? shown.narrow : shown.tool;
-    for (const name of Object.keys(PANES))
-        document.getElementById(name).hidden = narrow.matches && open !== name;
+    // Without photos the other panes have the room of theirs, on a wide screen.
+    const isThere = (name) => (narrow.matches ? open === name : name !== "photo" || hasPhotos());
+    for (const name of Object.keys(PANES)) document.getElementById(name).hidden = !isThere(name);
     for (const name of Object.keys(TOOLS)) document.getElementById(name).hidden = open !== name;
     document.getElementById("panes").hidden = narrow.matches && !PANES[open];
     document.getElementById("tools").hidden = narrow.matches && Boolean(PANES[open]);
@@ -62,7 +64,6 @@ function apply() {
         el.setAttribute("aria-selected", chosen);
         el.tabIndex = chosen ? 0 : -1;
     }
-    document.getElementById(`tab-${open}`).scrollIntoView({ block: "nearest", inline: "nearest" });
 }
 
 /** Shows a pane or a tool. */
@@ -71,7 +72,14 @@ export function show(name) {
     else shown.tool = name;
     shown.narrow = name;
     sessionStorage.setItem(KEPT, JSON.stringify(shown));
+    applyAndSee();
+}
+
+/** The tab that is open is seen in a row that is longer than the screen. */
+function applyAndSee() {
     apply();
+    const open = narrow.matches ? shown.narrow : shown.tool;
+    document.getElementById(`tab-${open}`).scrollIntoView({ block: "nearest", inline: "nearest" });
 }
 
 export function mountWork(work) {
@@ -102,9 +110,10 @@ export function mountWork(work) {
             Object.entries(TOOLS).map(([name, mount]) => section(name, mount, "tool")),
         ),
     );
-    narrow.addEventListener("change", apply);
-    watch(["state"], () => {
+    narrow.addEventListener("change", applyAndSee);
+    watch(["state", "view"], () => {
         work.hidden = !store.state?.project.file || store.beginsAnew;
+        apply();
     });
-    apply();
+    applyAndSee();
 }

@@ -58,7 +58,8 @@ test("a pattern file is sewn without a question", async () => {
 
     await until("a pipeline", async () => (await stateOf(page)).project.file);
     assert.match(studio.file(), /shirt_specification\.json/);
-    await page.getByText("No photo: this garment comes from a pattern.").waitFor();
+    // The pattern has the room of a photo that there is not.
+    await page.locator("#photo").waitFor({ state: "hidden" });
 });
 
 test("a file that is neither is refused in words", async () => {

@@ -157,7 +157,7 @@ export function makeCloth(world, draw) {
         },
         /** Goes on to where the garment has come to while it is draped. */
         moveTo(positions) {
-            if (mesh?.vertices === positions.length / 3) place(geometry.attributes.position.array, positions);
+            if (mesh && geometry.attributes.position) place(geometry.attributes.position.array, positions);
         },
     };
 }

@@ -137,19 +137,14 @@ export function mountGarment(root) {
             );
             tell("layers");
         });
-        watch(["moving"], () => {
-            if (!store.moving || !store.garment) return;
-            cloth.moveTo(store.moving);
-            // Crossings and gaps are those of the garment at rest.
-            marks.faults(store.garment, false);
-        });
+        watch(["moving"], () => store.garment && cloth.moveTo(store.garment.positions));
         watch(["body"], () => {
             none.hidden = Boolean(store.garment ?? store.body);
             if (!store.garment && store.body) frame();
             fitted = Boolean(store.garment) && fitted;
         });
         watch(["body", "layers"], () => marks.body(store.body, layers.body.checked));
-        watch(["garment", "layers"], () => marks.faults(store.garment, layers.faults.checked));
+        watch(["garment", "moving", "layers"], () => marks.faults(store.garment, layers.faults.checked));
         watch(["before", "layers"], () => marks.before(store.before, layers.before.checked));
         layers.before.addEventListener("change", loadBefore);
         looks.addEventListener("change", () => {
@@ -163,7 +158,7 @@ export function mountGarment(root) {
         farther.addEventListener("click", () => camera.zoom(0.8));
 
         watch(
-            ["hover", "chosen", "garment"],
+            ["hover", "chosen", "garment", "moving"],
             oncePerFrame(() => {
                 const at = selection.hover.spot ?? selection.chosen.spot;
                 const name = selection.hover.piece ?? selection.chosen.piece;

@@ -45,6 +45,7 @@ function edgeElement(piece, edge, at, seam, reach) {
             class: `edge ${colour}${seam?.proposed ? " proposed" : ""}`,
             "data-edge": name,
             "data-seam": seam?.name,
+            "data-length": 1000 * edge.length,
         },
         svg("path", { class: "line", d: path(line) }),
         svg(

@@ -8,6 +8,9 @@ import { choose, selection } from "../server/selection.js";
 import { alter, dart, lengthen, mirror, reverseSeam, unsew } from "./alterations.js";
 import { proposalLine, proposalList, proposals } from "./proposals.js";
 
+/** A longer list of seams is opened by who wants to see it. */
+const MOST_OPEN = 12;
+
 const pattern = () => store.view?.pattern;
 
 const names = (side) => side.map(({ piece, edge }) => `${piece}.${edge}`);
@@ -127,7 +130,7 @@ function piecePart(piece) {
 function seamList(seams) {
     return h(
         "details",
-        { class: "seams", open: true },
+        { class: "seams", open: seams.length <= MOST_OPEN },
         h("summary", {}, t("seams.count", { n: seams.length })),
         h(
             "ul",

@@ -20,6 +20,12 @@ import { sewing } from "./sewing.js";
 
 /** What an arrow key moves, in millimetres. */
 const STEP = 5;
+/** The width of a letter of a piece's name, in pixels: a piece that is narrower than its name is not named. */
+const LETTER = 7;
+/** Edges that are shorter on the screen show no number, in pixels. */
+const NUMBERED = 30;
+/** Corners at shorter edges are shown on the piece that is chosen. */
+const CORNERED = 24;
 
 let plane = { box: [0, 0, 100, 100], at: new Map() };
 let seams = new Map();
@@ -76,10 +82,32 @@ export function mountPattern(root) {
         for (const el of drawing.querySelectorAll(".corner")) el.setAttribute("r", 5.5 * scale);
         for (const el of drawing.querySelectorAll(".notch")) el.setAttribute("r", 2.5 * scale);
         spot.setAttribute("r", 6 * scale);
+        // What is written on a piece would cover it and its neighbours where it is drawn small.
+        for (const el of pieces.querySelectorAll(".piece")) {
+            const { piece } = el.dataset;
+            const width = plane.at.get(piece).size[0] / scale;
+            el.classList.toggle("unnamed", width < LETTER * piece.length);
+            const lengths = [...el.querySelectorAll(".edge")].map((edge) => edge.dataset.length / scale);
+            el.querySelectorAll(".edge").forEach((edge, k) =>
+                edge.classList.toggle("short", lengths[k] < NUMBERED),
+            );
+            el.querySelectorAll(".corner").forEach((corner, k) =>
+                corner.classList.toggle(
+                    "near",
+                    piece !== selection.chosen.piece && Math.min(lengths[k], lengths.at(k - 1)) < CORNERED,
+                ),
+            );
+        }
     }
 
+    /** The form of the drawing's place: its width to its height. */
+    const form = () => {
+        const { width, height } = drawing.getBoundingClientRect();
+        return width > 0 && height > 0 ? width / height : undefined;
+    };
+
     const draw = whenChanged((pattern, reached, proposed) => {
-        plane = arrange(pattern.pieces);
+        plane = arrange(pattern.pieces, form());
         seams = seamsByEdge(pattern.seams, proposed);
         replace(
             pieces,

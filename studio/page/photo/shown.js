@@ -12,6 +12,9 @@ export const photos = () =>
 /** Names of the photos that the file gives, read or not. */
 export const named = () => (tryRead(photosText())?.entries ?? []).map(([key]) => key);
 
+/** Whether the garment has photos at all; taken to be so before anything is known. */
+export const hasPhotos = () => !store.view || photos().length > 0 || named().length > 0;
+
 const photosText = () => store.state?.stages.find((stage) => stage.path === "photos")?.params.photos;
 
 /** The photo that is shown: the one that was chosen, else the first. */

@@ -60,7 +60,7 @@ const loadMoving = latest(async () => {
     const bytes = await getBytes("/api/moving");
     const moving = bytes && readMesh(bytes);
     if (!moving || moving.vertices !== store.garment?.vertices || !store.state.moving) return;
-    store.moving = moving.positions;
+    store.garment.positions = moving.positions;
     tell("moving");
 });
 

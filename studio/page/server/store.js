@@ -15,8 +15,6 @@ export const store = {
     garment: null,
     before: null,
     body: null,
-    /** Places of the garment's vertices while it is draped. */
-    moving: null,
     /** Cards of all stages by name. */
     cards: new Map(),
     measures: null,
