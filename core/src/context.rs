@@ -248,8 +248,8 @@ impl Context {
         self.listener.event(&self.stage, &self.entry, &event);
     }
 
-    /// Shows where the garment has come to, to those who look on: the places of its vertices, metres,
-    /// in their order. `make` is called where somebody does.
+    /// Shows where the garment has come to, to those who look on: the places of its vertices,
+    /// metres, in their order. `make` is called where somebody does.
     pub fn moves(&self, make: impl FnOnce() -> Vec<Point3>) {
         if self.listener.looks_on() {
             self.listener.moves(&self.stage, make());

@@ -3,6 +3,7 @@
 use crate::fault::StudioFault;
 use crate::live::ask::{RunAsk, RunKind};
 use crate::live::print::print;
+use crate::live::read::ReadPattern;
 use crate::live::shown::ShownArtifacts;
 use crate::live::{LiveRuns, RunTools};
 use crate::project::begin::BeginWith;
@@ -10,7 +11,6 @@ use crate::project::change::StudioChange;
 use crate::project::{StudioProject, upload, written, written_file};
 use crate::pulse::Pulse;
 use crate::show::measures::measures;
-use crate::show::proposals::ReadPattern;
 use crate::show::trade::trade;
 use crate::show::view::view;
 use crate::show::{mesh, pictures};
@@ -153,8 +153,8 @@ impl Studio {
         self.after(|project| project.redo(edit))
     }
 
-    /// Sews the proposed seams of these names: writes them into a file and gives it to the pattern's
-    /// reader. A run follows.
+    /// Sews the proposed seams of these names: writes them into a file and gives it to the
+    /// pattern's reader. A run follows.
     ///
     /// Errors: the reader takes no seams or has some; a name that is not proposed; those of
     /// [`StudioProject::edit`].

@@ -4,12 +4,13 @@
 //! it. A new edit stops the run under way; what runs made before stays in view until new results
 //! take its place.
 //!
-//! - `ask`: which pipelines; `state`: where they stand; `shown`: what they made; `moved`: how far a
-//!   garment is from another; `print`: one writer run by itself.
+//! - `ask`: which pipelines; `state`: where they stand; `shown`: what they made; `read`: a pattern
+//!   as it was read; `moved`: how far a garment is from another; `print`: one writer run by itself.
 
 pub(crate) mod ask;
 mod moved;
 pub(crate) mod print;
+pub(crate) mod read;
 pub(crate) mod shown;
 pub(crate) mod state;
 

@@ -1,6 +1,6 @@
 //! What runs have made so far, for a page to show.
 
-use crate::show::proposals::ReadPattern;
+use super::read::ReadPattern;
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::Arc;

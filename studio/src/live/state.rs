@@ -125,7 +125,7 @@ pub(crate) struct LiveState {
     pub(crate) run: RunStatus,
     /// By id.
     pub(crate) stages: BTreeMap<String, StageStatus>,
-    /// Where the vertices of the garment have come to while it is draped, metres; none while it is not.
+    /// Where the vertices of the garment have come to while it is draped, metres; else none.
     pub(crate) moving: Option<Arc<Vec<Point3>>>,
     /// Grows with it.
     pub(crate) moving_number: u64,

@@ -189,8 +189,8 @@ impl StudioProject {
     }
 
     /// Writes the pipeline that a project begins with, and its inputs; gives the new number. Where
-    /// it begins anew, the pipeline takes the place of the present text, which [`Self::undo`] brings
-    /// back.
+    /// it begins anew, the pipeline takes the place of the present text, which [`Self::undo`]
+    /// brings back.
     ///
     /// Errors: `exists` where there is one and it is not to begin anew; what there is not; what the
     /// system says.

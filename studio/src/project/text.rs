@@ -78,8 +78,8 @@ impl CheckedText {
             .collect()
     }
 
-    /// The path by which the reader of the pattern is given a file of seams; none where it takes none
-    /// or has one.
+    /// The path by which the reader of the pattern is given a file of seams; none where it takes
+    /// none or has one.
     pub(crate) fn seams_to_give(&self) -> Option<String> {
         let is_empty = |s: &&StageLine| s.params.get("seams").is_none_or(|text| text == "\"\"");
         let reader = self.stages.iter().filter(|s| s.takes_seams).find(is_empty)?;

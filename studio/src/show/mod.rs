@@ -8,7 +8,7 @@ pub(crate) mod measures;
 pub(crate) mod mesh;
 mod pattern;
 pub(crate) mod pictures;
-pub(crate) mod proposals;
+mod proposals;
 pub(crate) mod trade;
 pub(crate) mod view;
 

@@ -1,6 +1,7 @@
 //! What the runs have made, for all panes.
 
 use super::pattern::{pieces_of_outlines, pieces_of_pattern, seams_of_pattern, seams_of_plan};
+use super::proposals::proposals;
 use crate::live::shown::ShownArtifacts;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -9,8 +10,8 @@ use toile_core::artifact::{Figures, Outline, Photo, Point2};
 /// The photo whose landmarks are named without it.
 const FRONT: &str = "front";
 
-/// The view with its number; `given` are the names of landmarks that the text gives, `proposes` says
-/// whether seams may be proposed.
+/// The view with its number; `given` are the names of landmarks that the text gives, `proposes`
+/// says whether seams may be proposed.
 pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>, proposes: bool) -> Value {
     let pieces = match &shown.pattern {
         Some(pattern) => Some((pieces_of_pattern(pattern, &shown.photos), seams_of_pattern(pattern, shown))),
@@ -28,7 +29,7 @@ pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>
         "photos": shown.photos.iter().map(|(name, photo)| photo_json(name, photo, shown, given)).collect::<Vec<_>>(),
         "outlines": shown.outlines.iter().filter_map(|(name, o)| outline(name, o)).collect::<Vec<_>>(),
         "pattern": pieces.map(|(pieces, seams)| json!({ "pieces": pieces, "seams": seams })),
-        "proposals": read.map_or(json!([]), |read| read.view(shown.pattern.as_deref())),
+        "proposals": read.map_or(json!([]), |read| proposals(read, shown.pattern.as_deref())),
         "garment": shown.garment.is_some(),
         "body": shown.body.is_some(),
         "figures": figures.map(figures_json),

@@ -171,8 +171,8 @@ pub struct Progress {
     pub residual: f64,
 }
 
-/// Called after every step, with a function that gives the position of every vertex of the scene, m;
-/// it may stop the motion.
+/// Called after every step, with a function that gives the position of every vertex of the scene,
+/// m; it may stop the motion.
 pub type OnStep<'p> = dyn FnMut(&Progress, &dyn Fn() -> Vec<Vec3>) -> ControlFlow<()> + 'p;
 
 /// Where a motion ended.

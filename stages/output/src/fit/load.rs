@@ -77,7 +77,8 @@ impl ClothLoad {
     }
 }
 
-/// Pressure of a garment at rest on its body, Pa, one per vertex; none where the cloth is not on it.
+/// Pressure of a garment at rest on its body, Pa, one per vertex; none where the cloth is not on
+/// it.
 ///
 /// # Errors
 /// A fabric whose curves the engine does not take.

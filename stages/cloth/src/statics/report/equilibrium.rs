@@ -59,6 +59,6 @@ pub struct Equilibrium {
     pub restarts: usize,
 }
 
-/// Called while solving, with a function that gives the position of every vertex of the scene, m; it
-/// may stop the solver.
+/// Called while solving, with a function that gives the position of every vertex of the scene, m;
+/// it may stop the solver.
 pub type Progress<'p> = dyn FnMut(&LevelReport, &dyn Fn() -> Vec<Vec3>) -> ControlFlow<()> + 'p;
