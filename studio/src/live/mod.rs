@@ -193,6 +193,7 @@ fn attempt(desk: &Arc<RunDesk>, tools: &RunTools, ask: &RunAsk, kind: &RunKind, 
         let edit = ask.edit;
         state.run = RunStatus { number, edit, kind, state: "running", begun, ..RunStatus::default() };
         state.stages.clear();
+        state.progress = None;
         state.break_off();
     }
     desk.pulse.beat();
@@ -211,7 +212,6 @@ fn attempt(desk: &Arc<RunDesk>, tools: &RunTools, ask: &RunAsk, kind: &RunKind, 
     });
     let mut state = desk.state();
     state.run.seconds = state.run.begun.take().map_or(0.0, |begun| begun.elapsed().as_secs_f64());
-    state.progress = None;
     let goes_on = outcome.is_ok();
     match outcome {
         Ok(result) => {
