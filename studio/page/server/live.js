@@ -57,9 +57,8 @@ const loadView = latest(async () => {
 
 /** Where the garment has come to while it is draped; nothing of another mesh than the one that is shown. */
 const loadMoving = latest(async () => {
-    const bytes = await getBytes("/api/moving");
-    const moving = bytes && readMesh(bytes);
-    if (!moving || moving.vertices !== store.garment?.vertices || !store.state.moving) return;
+    const moving = readMesh(await getBytes("/api/moving"));
+    if (moving.vertices !== store.garment?.vertices || !store.state.moving) return;
     store.garment.positions = moving.positions;
     tell("moving");
 });

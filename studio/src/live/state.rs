@@ -135,8 +135,8 @@ pub(crate) struct LiveState {
     pub(super) kept: ShownArtifacts,
     /// Grows with what is shown.
     pub(crate) view: u64,
-    /// The last note of the present run; it stays when the run ends, so that none is lost on a short
-    /// one.
+    /// The last note of the present run. It stays when the run ends, so that none is lost on a
+    /// short one.
     pub(crate) progress: Option<ProgressNote>,
     /// Grows with the notes of progress.
     pub(crate) progress_number: u64,

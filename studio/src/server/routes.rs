@@ -96,7 +96,7 @@ fn get(studio: &Studio, what: &str, name: &str) -> Result<HttpAnswer, StudioFaul
         ("cards", "") => Ok(bytes("application/json", studio.cards().to_owned())),
         ("view", "") => Ok(as_json(&studio.view())),
         ("garment", "") => Ok(bytes(MESH, studio.garment()?.to_vec())),
-        ("moving", "") => Ok(bytes(MESH, studio.moving()?)),
+        ("moving", "") => Ok(bytes(MESH, studio.moving())),
         ("before", "") => Ok(bytes(MESH, studio.before()?)),
         ("body", "") => Ok(bytes(MESH, studio.body()?)),
         ("out", "") => Ok(as_json(&studio.written())),
