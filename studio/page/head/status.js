@@ -50,8 +50,8 @@ const tellRun = whenChanged((run, words, proposed) => {
     else told(run, words);
 });
 
-/** What was wrong with another text is no longer said. */
-const forget = whenChanged(() => line.dataset.kind === "error" && say(""));
+/** What was said of another text is no longer said. */
+const forget = whenChanged(() => say(""));
 
 /** What keeps a text from being run. What someone types has its faults below it. */
 const tellFault = whenChanged((edit, fault) => {
