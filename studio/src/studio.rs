@@ -268,7 +268,11 @@ impl Studio {
     }
 
     pub(crate) fn texture(&self, n: usize) -> Result<Vec<u8>, StudioFault> {
-        pictures::texture(&self.shown(), n)
+        // A page asks for the pictures of the garment that it was given last.
+        let shown = self.shown();
+        let packed = held(&self.packed).as_ref().map(|packed| packed.model.clone());
+        let model = packed.unwrap_or_else(|| shown.model.clone());
+        pictures::texture(&ShownArtifacts { model, ..shown }, n)
     }
 
     /// The garment as a file.
