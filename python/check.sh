@@ -10,7 +10,7 @@ most_bytes=$((25 * 1000 * 1000))
 rm -rf target/wheels target/fresh
 python3 -m venv target/fresh
 target/fresh/bin/pip install --quiet 'maturin>=1.9,<2'
-PATH="$PWD/target/fresh/bin:$PATH" maturin build --release --locked --out target/wheels
+PATH="$PWD/target/fresh/bin:$PATH" maturin build --release --locked --compression-level 9 --out target/wheels
 wheel="$(ls target/wheels/*.whl)"
 bytes="$(stat -c %s "$wheel")"
 echo "$wheel: $bytes bytes"
