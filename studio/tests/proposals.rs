@@ -20,14 +20,20 @@ fn names(view: &Value, of: &str) -> Vec<String> {
     list.iter().map(|seam| seam["name"].as_str().unwrap().to_owned()).collect()
 }
 
-#[test]
-fn a_drawing_is_proposed_seams_and_those_that_are_taken_are_sewn() {
+/// A studio on the drawing whose first run is done, with the folder.
+fn drawn() -> (tempfile::TempDir, Served) {
     let dir = tempfile::tempdir().unwrap();
     std::fs::copy(sample("pleats.svg"), dir.path().join("mine.svg")).unwrap();
     std::fs::write(dir.path().join("pipeline.ron"), DRAWN).unwrap();
     let served = Served::new(dir.path(), true);
+    served.client.wait("the first run", is_done);
+    (dir, served)
+}
+
+#[test]
+fn a_drawing_is_proposed_seams_and_those_that_are_taken_are_sewn() {
+    let (_dir, served) = drawn();
     let client = &served.client;
-    client.wait("the first run", is_done);
     let view = client.get("/api/view").json();
     let proposed = names(&view, "/proposals");
     assert!(proposed.len() >= 2 && names(&view, "/pattern/seams").is_empty(), "{proposed:?}");
@@ -67,12 +73,8 @@ fn a_drawing_is_proposed_seams_and_those_that_are_taken_are_sewn() {
 
 #[test]
 fn edges_that_were_sewn_by_hand_are_not_proposed_any_more() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::copy(sample("pleats.svg"), dir.path().join("mine.svg")).unwrap();
-    std::fs::write(dir.path().join("pipeline.ron"), DRAWN).unwrap();
-    let served = Served::new(dir.path(), true);
+    let (_dir, served) = drawn();
     let client = &served.client;
-    client.wait("the first run", is_done);
     let view = client.get("/api/view").json();
     let all = names(&view, "/proposals");
     let edge = |side: usize| {

@@ -84,7 +84,8 @@ test("a sample is one click away", async () => {
     quiet(page);
 });
 
-test("a photo that cannot be read does not hold the folder: one begins anew, and undo goes back", async () => {
+/** A page of a project whose photo is a text by another name. */
+async function begunWithNotes() {
     const studio = await serve();
     const page = await studio.open({ wait: false });
     const text = { name: "notes.jpg", mimeType: "image/jpeg", buffer: Buffer.from("these are notes") };
@@ -92,6 +93,11 @@ test("a photo that cannot be read does not hold the folder: one begins anew, and
     await page.getByLabel("Width").fill("52");
     await page.getByRole("button", { name: "Make the garment" }).click();
     await said(page, /notes\.jpg/);
+    return page;
+}
+
+test("a photo that cannot be read does not hold the folder: one begins anew, and undo goes back", async () => {
+    const page = await begunWithNotes();
     await page.getByText("The photo is not read yet.").waitFor();
 
     await page.getByRole("button", { name: "New…" }).click();
@@ -107,13 +113,7 @@ test("a photo that cannot be read does not hold the folder: one begins anew, and
 });
 
 test("another photo takes the place of one, under the same width", async () => {
-    const studio = await serve();
-    const page = await studio.open({ wait: false });
-    const text = { name: "notes.jpg", mimeType: "image/jpeg", buffer: Buffer.from("these are notes") };
-    await page.getByLabel("Choose a file").setInputFiles(text);
-    await page.getByLabel("Width").fill("52");
-    await page.getByRole("button", { name: "Make the garment" }).click();
-    await said(page, /notes\.jpg/);
+    const page = await begunWithNotes();
     await page.getByLabel("Choose a file for front").setInputFiles(sample("vest/front.jpg"));
     await settled(page);
     assert.match((await stateOf(page)).text, /"front": \(file: "front\.jpg", width: "52 cm"\)/);
