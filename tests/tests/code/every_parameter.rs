@@ -17,6 +17,10 @@ use toile_core::{Card, Inputs, Registry};
 const VALUES: &[(&str, &str)] = &[
     ("Alter.alterations", "[MoveEdge(edge: \"front.hem\", x: \"0 mm\", y: \"-20 mm\")]"),
     ("Arap.darts", "Auto(max_strain: 0.02)"),
+    (
+        "Arrange.hand_places",
+        "[(piece: \"front\", middle: (\"50 mm\", \"1200 mm\", \"300 mm\"), turn: (0, 10, 0))]",
+    ),
     ("Arrange.key_points", "[(edge: \"front.hem\", at: 0.5, landmark: \"neck_left\")]"),
     ("Block.landmarks", "{\"armpit_left\": (0.3, 0.4)}"),
     ("Block.waist", "Gathered(fullness: 1.5, band: \"3 cm\")"),

@@ -9,7 +9,8 @@
 //! made for a body whose origin is its middle are raised onto the floor. Pieces with pleats are
 //! folded first ([`pleats`]), and pieces that are sewn onto others are laid on them last
 //! ([`patches`]). A pattern in which no piece has a pose is placed by names, seams and sizes
-//! ([`region`], [`stand`]); pieces with key points stand at their landmarks ([`key_points`]). Other
+//! ([`region`], [`stand`]); pieces with key points stand at their landmarks ([`key_points`]), and
+//! those with a place by hand are moved there, whatever else was decided ([`hand_places`]). Other
 //! starts are left for the solver: pieces without the gaps between those above each other
 //! ([`tiers`]), and skirts on cones ([`cones`]).
 //!
@@ -19,6 +20,7 @@
 
 mod boards;
 mod cones;
+mod hand_places;
 mod key_points;
 mod layers;
 mod legs;
@@ -35,9 +37,11 @@ mod tubes;
 
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
+pub use hand_places::HandPlace;
 pub use key_points::KeyPoint;
 use move_input::MoveInput;
 use moving::Moved;
+pub use region::undecided;
 use region::{Decided, Region};
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
@@ -101,6 +105,14 @@ pub struct Arrange {
     /// landmarks, and nothing else moves it.
     #[param(default = Vec::new(), min = 0, max = 1)]
     key_points: Vec<KeyPoint>,
+    /// Pieces that are moved by hand, as the studio does when they are dragged:
+    /// `[(piece: "collar", middle: ("0 mm", "1450 mm", "-80 mm"), turn: (0, 180, 0))]`. The middle
+    /// of the piece's box stands there, measured to the wearer's left, up from the floor and
+    /// forwards, and the piece is turned about it by degrees around these axes, one after the
+    /// other. It keeps the shape that it has otherwise; one that nothing else places is flat and
+    /// upright, its outside forwards.
+    #[param(default = Vec::new())]
+    hand_places: Vec<HandPlace>,
 }
 
 #[stage]
@@ -136,27 +148,40 @@ impl Arrange {
             .hint(format!("take \"{name}\" out of `key_points`")));
         }
         told_by_hand.into_iter().for_each(|what| cx.note(what));
-        let elsewhere = patches.union(&keyed).cloned().collect();
+        let dragged = hand_places::names(&self.hand_places, &flat, &patches, &keyed)?;
+        let mut elsewhere: BTreeSet<String> = patches.union(&keyed).cloned().collect();
         let outer = patches::without(pattern, &patches);
-        let worn = patches::without(pattern, &elsewhere);
+        let mut worn = patches::without(pattern, &elsewhere);
+        if worn.pieces.iter().any(|p| p.pose.is_some()) {
+            let has_pose = |name: &&String| pattern.piece(name).is_some_and(|p| p.pose.is_some());
+            elsewhere.extend(dragged.iter().filter(|name| !has_pose(name)).cloned());
+            worn = patches::without(pattern, &elsewhere);
+        }
         let mut standing = flat.clone();
         standing.retain(|name, _| !elsewhere.contains(*name));
         // A pattern without any pose is placed by what its pieces are.
         let unplaced = worn.pieces.iter().all(|p| p.pose.is_none());
         let (mut places, sleeves) = match unplaced && !worn.pieces.is_empty() {
-            true => self.stood(&outer, &keyed, &standing, body, cx)?,
+            true => self.stood(&outer, [&keyed, &dragged], &standing, body, cx)?,
             false => (posed(&worn, &standing)?, None),
         };
+        elsewhere.extend(dragged.iter().filter(|name| !places.contains_key(*name)).cloned());
+        let worn = patches::without(pattern, &elsewhere);
         self.raise(&mut places, body, cx);
-        at_the_body(&places, body)?;
+        let mut put = places.clone();
+        hand_places::stand(&dragged, &flat, &mut put);
+        hand_places::put(&self.hand_places, &mut put);
+        at_the_body(&put, body)?;
         layers::spread(&worn, &mut places, body);
         let finished = |mut places: PiecePlaces| -> Result<(Vec<Point3>, Vec<String>), StageError> {
             places.extend(by_hand.clone());
+            hand_places::stand(&dragged, &flat, &mut places);
             for (name, of) in &folded {
                 if let Some(places) = places.get_mut(name) {
                     of.deepen(places);
                 }
             }
+            hand_places::put(&self.hand_places, &mut places);
             let told = patches::lay(&patches, &mut places, &seams, &flat)?;
             Ok((places.into_values().flatten().collect(), told))
         };
@@ -215,7 +240,7 @@ impl Arrange {
     fn stood(
         &self,
         pattern: &Pattern,
-        by_hand: &BTreeSet<String>,
+        [keyed, dragged]: [&BTreeSet<String>; 2],
         offsets: &Offsets,
         body: &Body,
         cx: &Context,
@@ -223,7 +248,7 @@ impl Arrange {
         if let Some(name) = offsets.keys().find(|name| pattern.piece(name).is_none()) {
             return Err(unknown(name));
         }
-        let decided = region::decide(pattern, by_hand)?;
+        let decided = region::decide(pattern, keyed, dragged)?;
         let (places, told) = stand::stand(pattern, &decided, offsets, body, self.clearance.metres())?;
         told.into_iter().for_each(|what| cx.note(what));
         let arm = |(p, d): (&Piece, &Decided)| match d.region {
@@ -329,7 +354,7 @@ fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<PiecePlaces, StageError
         let piece = pattern.piece(name).ok_or_else(|| unknown(name))?;
         let pose = piece.pose.ok_or_else(|| {
             StageError::invalid(format!("nothing says where the piece \"{name}\" stands"))
-                .hint("place it by `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have")
+                .hint("place it by `hand_places` or `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have")
         })?;
         Ok(((*name).to_owned(), panel.positions.iter().map(|p| pose.at(*p)).collect()))
     };

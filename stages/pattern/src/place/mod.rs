@@ -7,7 +7,7 @@ mod subdivide;
 mod transfer;
 mod whole;
 
-pub use arrange::{Arrange, KeyPoint};
+pub use arrange::{Arrange, HandPlace, KeyPoint, undecided};
 pub use pose_garment::PoseGarment;
 pub use subdivide::Subdivide;
 pub use transfer::Transfer;

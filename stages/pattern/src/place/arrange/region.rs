@@ -8,6 +8,7 @@
 //! armhole that it is sewn into. Cost: edges of seams. Limits: sleeves of several pieces, collars,
 //! cuffs, hoods and yokes are not placed; a piece without a word needs one of the seams above.
 
+use super::patches::{names, without};
 use std::collections::BTreeSet;
 use toile_core::prelude::*;
 
@@ -66,6 +67,12 @@ pub(super) struct Decided {
     pub(super) hand: Option<Hand>,
     /// What speaks for it.
     pub(super) why: String,
+}
+
+impl Decided {
+    fn by_hand(why: &str) -> Self {
+        Decided { region: Region::ByHand, side: Side::Around, hand: None, why: why.to_owned() }
+    }
 }
 
 /// Edges of two pieces, or twice of one, that a seam joins.
@@ -150,36 +157,66 @@ fn joint(pattern: &Pattern, [one, other]: [&[SeamStretch]; 2], (i, j): (usize, u
     (to - from > 1e-6).then_some(Joint { pieces: [i, j], edges: [a, b], middle, share: to - from })
 }
 
-/// Region and side of every piece, in their order; those that are placed `by_hand` are not looked
-/// at.
+/// Region and side of every piece, in their order. Those in `keyed` are not looked at; one in
+/// `dragged` that nothing decides is placed by hand alone.
 ///
 /// Errors: the first piece that nothing decides, or that is sewn to nothing, with the remedy.
-pub(super) fn decide(pattern: &Pattern, by_hand: &BTreeSet<String>) -> Result<Vec<Decided>, StageError> {
-    let joints = joints(pattern);
-    let words = own_words(pattern);
-    let pieces = &pattern.pieces;
-    if joints.is_empty() {
+pub(super) fn decide(
+    pattern: &Pattern,
+    keyed: &BTreeSet<String>,
+    dragged: &BTreeSet<String>,
+) -> Result<Vec<Decided>, StageError> {
+    if joints(pattern).is_empty() {
         return Err(StageError::invalid("the pattern has no seams: its pieces would fall to the floor")
             .hint("give its reader the file of seams that you have looked through as `seams`"));
     }
-    let all = (0..pieces.len()).map(|i| {
+    let taken = |(piece, decision): (&Piece, Decision)| match decision {
+        Decision::Undecided(_) if dragged.contains(&piece.name) => Ok(Decided::by_hand("its place by hand")),
+        Decision::Made(decided) => Ok(decided),
+        Decision::Undecided(e) | Decision::Loose(e) => Err(e),
+    };
+    pattern.pieces.iter().zip(decisions(pattern, keyed)).map(taken).collect()
+}
+
+/// The pieces that a user must place: those that nothing places, but for patches.
+pub fn undecided(pattern: &Pattern) -> Vec<String> {
+    let worn = without(pattern, &names(pattern));
+    if worn.pieces.iter().any(|p| p.pose.is_some()) {
+        let poseless = worn.pieces.iter().filter(|p| p.pose.is_none());
+        return poseless.map(|p| p.name.clone()).collect();
+    }
+    let all = worn.pieces.iter().zip(decisions(&worn, &BTreeSet::new()));
+    let is_undecided =
+        |(p, d): (&Piece, Decision)| matches!(d, Decision::Undecided(_)).then(|| p.name.clone());
+    all.filter_map(is_undecided).collect()
+}
+
+/// What the rules say of a piece.
+enum Decision {
+    Made(Decided),
+    /// Nothing decides where it stands.
+    Undecided(StageError),
+    /// It is sewn to nothing.
+    Loose(StageError),
+}
+
+/// What is decided of every piece, in their order; those in `keyed` are not looked at.
+fn decisions(pattern: &Pattern, keyed: &BTreeSet<String>) -> Vec<Decision> {
+    let joints = joints(pattern);
+    let words = own_words(pattern);
+    let pieces = &pattern.pieces;
+    let decided = |i: usize| -> Result<Decided, StageError> {
         let name = &pieces[i].name;
         let is = |table: &[&str]| words[i].iter().find(|w| table.contains(&w.as_str())).cloned();
         let unclear = |what: String| {
             StageError::invalid(what).hint(
-                "call it front, back or waistband, place it by `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have",
+                "call it front, back or waistband, place it by `hand_places` or `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have",
             )
         };
-        if by_hand.contains(name) {
-            let why = "its key points".to_owned();
-            return Ok(Decided { region: Region::ByHand, side: Side::Around, hand: None, why });
-        }
-        if !joints.iter().any(|j| j.pieces.contains(&i)) {
-            let e = StageError::invalid(format!("the piece \"{name}\" is sewn to nothing and would fall"));
-            return Err(e.hint("write its seams into the file that the reader takes as `seams`, or take the piece out"));
-        }
         if let Some(word) = is(&OTHER) {
-            return Err(unclear(format!("nothing places the piece \"{name}\", a \"{word}\" by its name, without a pose")));
+            return Err(unclear(format!(
+                "nothing places the piece \"{name}\", a \"{word}\" by its name, without a pose"
+            )));
         }
         let twin = |j: &Joint| j.pieces[0] != j.pieces[1] && j.pieces.contains(&i) && twins(pieces, j.pieces);
         let itself = joints.iter().any(|j| j.pieces == [i, i]);
@@ -199,7 +236,8 @@ pub(super) fn decide(pattern: &Pattern, by_hand: &BTreeSet<String>) -> Result<Ve
                 let hand = leg_hand(i, pieces, &joints).ok_or_else(|| {
                     unclear(format!("nothing tells the front of the leg \"{name}\" from its back"))
                 })?;
-                let why = "it is sewn to itself and to its mirror image; its rise is longer behind".to_owned();
+                let why =
+                    "it is sewn to itself and to its mirror image; its rise is longer behind".to_owned();
                 Ok(Decided { region: Region::Leg(hand), side: Side::Around, hand: None, why })
             }
             None if is_band(&pieces[i]) && sews_tops(i, pieces, &joints) => {
@@ -212,14 +250,29 @@ pub(super) fn decide(pattern: &Pattern, by_hand: &BTreeSet<String>) -> Result<Ve
                 let own_side = |j: &&Joint| twin(j);
                 let hand = joints.iter().find(own_side).map(|j| half_hand(i, j, pieces, side));
                 let (region, because) = match shoulder {
-                    true => (Region::Trunk, "it is sewn at its upper end beside the middle, as shoulders are"),
+                    true => {
+                        (Region::Trunk, "it is sewn at its upper end beside the middle, as shoulders are")
+                    }
                     false => (Region::Skirt, "none of its seams is a shoulder"),
                 };
                 Ok(Decided { region, side, hand, why: format!("the word \"{word}\" in its name; {because}") })
             }
         }
-    });
-    all.collect()
+    };
+    let decision = |i: usize| {
+        let name = &pieces[i].name;
+        if keyed.contains(name) {
+            return Decision::Made(Decided::by_hand("its key points"));
+        }
+        if !joints.iter().any(|j| j.pieces.contains(&i)) {
+            let e = StageError::invalid(format!("the piece \"{name}\" is sewn to nothing and would fall"));
+            return Decision::Loose(e.hint(
+                "write its seams into the file that the reader takes as `seams`, or take the piece out",
+            ));
+        }
+        decided(i).map_or_else(Decision::Undecided, Decision::Made)
+    };
+    (0..pieces.len()).map(decision).collect()
 }
 
 /// Whether words tell a front or a back, and which does.

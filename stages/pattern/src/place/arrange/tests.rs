@@ -142,7 +142,7 @@ fn pieces_without_a_place_are_refused_by_name() {
     collar.pose = None;
     let e = arranged(&shirt, true).unwrap_err();
     assert_eq!(e.message, "nothing says where the piece \"collar_back\" stands");
-    let hint = "place it by `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have";
+    let hint = "place it by `hand_places` or `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have";
     assert_eq!(e.hint.as_deref(), Some(hint));
     shirt.pattern.pieces.retain(|p| p.name != "collar_back");
     let e = arranged(&shirt, true).unwrap_err();

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::Arrange;
-use super::region::{Decided, Region, Side, decide};
+use super::region::{Decided, Region, Side, decide, undecided};
 use crate::mesh::GridMesher;
 use std::collections::BTreeSet;
 use toile_core::prelude::*;
@@ -143,7 +143,7 @@ fn looks_out(garment: &Garment, panel: &str) -> bool {
 
 #[test]
 fn fronts_and_backs_are_known_by_the_short_words_of_cad_programs() {
-    let decided = decide(&tank(), &BTreeSet::new()).unwrap();
+    let decided = decide(&tank(), &BTreeSet::new(), &BTreeSet::new()).unwrap();
     let why = |word: &str| {
         format!(
             "the word \"{word}\" in its name; it is sewn at its upper end beside the middle, as shoulders are"
@@ -167,7 +167,7 @@ fn a_tank_hangs_from_the_shoulders_before_and_behind_the_body() {
 #[test]
 fn legs_go_around_their_own_leg_and_the_band_around_the_waist() {
     let pattern = leggings();
-    let decided = decide(&pattern, &BTreeSet::new()).unwrap();
+    let decided = decide(&pattern, &BTreeSet::new(), &BTreeSet::new()).unwrap();
     let found: Vec<Region> = decided.iter().map(|d| d.region).collect();
     assert_eq!(found, [Region::Leg(Hand::Left), Region::Leg(Hand::Right), Region::Waist]);
     let g = arranged(&pattern).unwrap();
@@ -183,7 +183,7 @@ fn legs_go_around_their_own_leg_and_the_band_around_the_waist() {
 #[test]
 fn sleeves_go_around_the_arm_whose_armhole_they_are_sewn_into() {
     let pattern = tee();
-    let decided = decide(&pattern, &BTreeSet::new()).unwrap();
+    let decided = decide(&pattern, &BTreeSet::new(), &BTreeSet::new()).unwrap();
     let found: Vec<Region> = decided.iter().skip(2).map(|d| d.region).collect();
     assert_eq!(found, [Region::Arm(Hand::Right), Region::Arm(Hand::Left)]);
     let g = arranged(&pattern).unwrap();
@@ -257,7 +257,7 @@ fn what_cannot_be_sewn_or_placed_is_refused_by_name() {
             "write its seams into the file that the reader takes as `seams`, or take the piece out".into()
         )
     );
-    let hint = "call it front, back or waistband, place it by `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have";
+    let hint = "call it front, back or waistband, place it by `hand_places` or `key_points` of `Arrange`, or give its pattern places around the body, as GarmentCode files have";
     let renamed = |name: &str| {
         let mut p = tank();
         p.pieces[0].name = name.into();
@@ -327,4 +327,87 @@ fn key_points_on_what_is_not_there_are_refused_with_what_is() {
     let (message, hint) = refused("TANK FRT.neck", "waist");
     assert_eq!(message, "the body has no landmark \"waist\"");
     assert!(hint.contains("\"waist_back\", \"waist_front\""), "{hint}");
+}
+
+#[test]
+fn a_piece_that_no_rule_places_stands_where_it_was_dragged() {
+    assert_eq!(undecided(&collared()), ["TANK COLLAR"]);
+    let at = "(hand_places: [(piece: \"TANK COLLAR\", middle: (\"0 mm\", \"1500 mm\", \"-90 mm\"), turn: (0, 180, 0))])";
+    let garment = arranged_with(&collared(), at).unwrap();
+    let collar = middle(&garment, "TANK COLLAR");
+    assert!((collar - Vector3::new(0.0, 1.5, -0.09)).norm() < 2e-3, "{collar}");
+    assert!(looks_out(&garment, "TANK COLLAR"));
+    let off = middle(&garment, "TANK FRT") - middle(&arranged(&tank()).unwrap(), "TANK FRT");
+    assert!(off.norm() < 5e-3, "{off}");
+}
+
+#[test]
+fn a_dragged_sleeve_stays_bent() {
+    let stands = arranged(&tee()).unwrap();
+    let of = |garment: &Garment| -> Vec<Point3> {
+        let panel = garment.panels.iter().find(|p| p.name == "left sleeve").unwrap();
+        garment.positions[panel.vertices.clone()].to_vec()
+    };
+    let place = "(piece: \"left sleeve\", middle: (\"500 mm\", \"1300 mm\", \"50 mm\"))";
+    let dragged = arranged_with(&tee(), &format!("(hand_places: [{place}])")).unwrap();
+    let way = of(&dragged)[0] - of(&stands)[0];
+    assert!(way.norm() > 0.01);
+    for (before, after) in of(&stands).iter().zip(of(&dragged)) {
+        assert!((after - before - way).norm() < 1e-9);
+    }
+    // The right sleeve stays, and so does the body.
+    for name in ["right sleeve", "TANK FRT", "TANK BK"] {
+        assert_eq!(middle(&stands, name), middle(&dragged, name), "{name}");
+    }
+}
+
+#[test]
+fn turns_go_around_the_three_axes_one_after_the_other() {
+    let turned = |turn: &str| {
+        let place = format!("(piece: \"TANK FRT\", middle: (\"0 m\", \"1.2 m\", \"0.3 m\"), turn: {turn})");
+        let garment = arranged_with(&tank(), &format!("(hand_places: [{place}])")).unwrap();
+        let panel = garment.panels.iter().find(|p| p.name == "TANK FRT").unwrap();
+        garment.positions[panel.vertices.clone()].to_vec()
+    };
+    let (before, after) = (turned("(0, 0, 0)"), turned("(90, 90, 0)"));
+    let middle = Vector3::new(0.0, 1.2, 0.3);
+    for (p, q) in before.iter().zip(after) {
+        let d = p.coords - middle;
+        // Around x: y goes to z; then around y: z goes to x.
+        let expected = middle + Vector3::new(d.y, -d.z, -d.x);
+        assert!((q.coords - expected).norm() < 1e-9, "{q} {expected}");
+    }
+}
+
+#[test]
+fn places_by_hand_that_cannot_be_are_refused() {
+    let refused = |params: &str| {
+        let e = arranged_with(&tank(), params).unwrap_err();
+        (e.message, e.hint.unwrap_or_default())
+    };
+    let front = "(piece: \"TANK FRT\", middle: (\"0 m\", \"1.2 m\", \"0.3 m\"))";
+    assert_eq!(
+        refused(&format!("(hand_places: [{}])", front.replace("FRT", "SIDE"))),
+        ("the pattern has no piece \"TANK SIDE\"".into(), "its pieces are \"TANK BK\", \"TANK FRT\"".into())
+    );
+    assert_eq!(
+        refused(&format!("(hand_places: [{front}, {front}])")),
+        ("the piece \"TANK FRT\" has two places".into(), "keep one of them".into())
+    );
+    let key = "(edge: \"TANK FRT.neck\", at: 0.5, landmark: \"neck_base_front\")";
+    assert_eq!(
+        refused(&format!("(key_points: [{key}], hand_places: [{front}])")),
+        (
+            "the piece \"TANK FRT\" has key points, too".into(),
+            "keep one of `key_points` and `hand_places` for it".into()
+        )
+    );
+    assert_eq!(
+        refused(&format!("(hand_places: [{}])", front.replace("1.2 m", "120 m"))),
+        (
+            "the piece \"TANK FRT\" starts more than 10 m away".into(),
+            "give its middle in metres from the floor below the wearer, such as (\"0 m\", \"1.2 m\", \"0.2 m\")"
+                .into()
+        )
+    );
 }

@@ -1,6 +1,6 @@
 //! What can be changed, and who does it.
 
-use super::{AlteredPattern, dart, held, mirror, moved, names, sewn};
+use super::{AlteredPattern, dart, held, mirror, moved, names, sewn, sewn_on};
 use toile_core::prelude::*;
 
 /// No move is longer than this, metres: a train of a wedding dress is shorter.
@@ -69,6 +69,23 @@ pub enum Alteration {
         /// The edge.
         edge: EdgeRef,
     },
+    /// Sews a piece onto another, as a pocket: all its edges but the highest.
+    SewOn {
+        /// The piece that lies outside.
+        piece: String,
+        /// The piece on which it lies.
+        onto: String,
+        /// How far its middle lies to the right of that of the other piece, as seen from outside
+        /// the wearer; middles are those of the boxes around the pieces.
+        x: Length,
+        /// How far above it.
+        y: Length,
+    },
+    /// Takes a piece out, and opens its seams.
+    Remove {
+        /// The piece.
+        piece: String,
+    },
 }
 
 impl Alteration {
@@ -100,16 +117,23 @@ impl Alteration {
             }
             Alteration::Sew { a, b, reversed } => sewn::sew(pattern, [a, b], *reversed, cx),
             Alteration::Unsew { edge } => sewn::unsew(pattern, edge, cx),
+            Alteration::SewOn { piece, onto, .. } => sewn_on::sew_on(pattern, piece, onto, self.way()),
+            Alteration::Remove { piece } => sewn::remove(pattern, piece, cx),
         }
     }
 
     /// The lengths that it states.
     fn lengths(&self) -> Vec<Length> {
         match self {
-            Alteration::MoveCorner { x, y, .. } | Alteration::MoveEdge { x, y, .. } => vec![*x, *y],
+            Alteration::MoveCorner { x, y, .. }
+            | Alteration::MoveEdge { x, y, .. }
+            | Alteration::SewOn { x, y, .. } => vec![*x, *y],
             Alteration::Lengthen { by, .. } => vec![*by],
             Alteration::Dart { width, length, .. } => vec![*width, *length],
-            Alteration::Mirror { .. } | Alteration::Sew { .. } | Alteration::Unsew { .. } => Vec::new(),
+            Alteration::Mirror { .. }
+            | Alteration::Sew { .. }
+            | Alteration::Unsew { .. }
+            | Alteration::Remove { .. } => Vec::new(),
         }
     }
 

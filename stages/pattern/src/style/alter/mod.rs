@@ -2,7 +2,8 @@
 //!
 //! Method: [`moved`] moves corners, and every edge beside them follows by the similarity that takes
 //! its old ends to the new ones, so that it keeps its shape; [`dart`] cuts darts, [`mirror`] makes
-//! mirror images, [`sewn`] sews and opens seams. [`held`] refuses what no cloth can be cut to. The
+//! mirror images, [`sewn`] sews and opens seams and takes pieces out, [`sewn_on`] sews
+//! pockets on. [`held`] refuses what no cloth can be cut to. The
 //! changed pattern is lowered anew; [`shown`] remembers of each edge where its cloth lies in the
 //! photo, by shares of its length, so that the photo goes along. [`names`] finds what an alteration
 //! names. Cost: some milliseconds an alteration. Limits: lines and holes within a piece stay where
@@ -16,6 +17,7 @@ mod mirror;
 mod moved;
 mod names;
 mod sewn;
+mod sewn_on;
 mod shown;
 #[cfg(test)]
 mod tests;
@@ -27,8 +29,8 @@ use toile_core::prelude::*;
 /// What is cut and sewn, before and behind.
 type CutAndSewn = (Pattern, Set<Outline>, SewingPlan);
 
-/// Changes a pattern by hand: moves corners and edges, cuts darts, mirrors pieces, sews and opens
-/// seams.
+/// Changes a pattern by hand: moves corners and edges, cuts darts, mirrors pieces and takes them
+/// out, sews and opens seams.
 ///
 /// Stands behind what makes the pattern: the style, `Neckline`, or a reader. Alterations act one
 /// after the other. Edges are those of the pattern, `"piece.edge"`; y is up and x to the right as
@@ -37,8 +39,10 @@ type CutAndSewn = (Pattern, Set<Outline>, SewingPlan);
 /// its lower end, one more level at both ends by half. `Dart` is cut out of an edge, which becomes
 /// `EDGE_1`, `EDGE_dart_1`, `EDGE_dart_2` and `EDGE_2`, and keeps its seams. `Mirror` adds a piece,
 /// or makes one that is there the mirror image. `Sew` pairs the start of one edge with the end of
-/// the other, as pieces laid face to face meet; `Unsew` opens every seam of an edge. A seam whose
-/// sides differ now is eased or gathered, with a note. Pieces of photos take their picture along.
+/// the other, as pieces laid face to face meet; `SewOn` sews all edges of a piece but the highest
+/// onto another piece, as a pocket. `Unsew` opens every seam of an edge, `Remove` takes a piece out
+/// and opens its seams. A seam whose sides differ now is eased or gathered, with
+/// a note. Pieces of photos take their picture along.
 #[stage(
     role = Style,
     source = "pattern alteration: Aldrich 2008; mean value coordinates: Hormann and Floater 2006",
@@ -52,7 +56,9 @@ pub struct Alter {
     /// `Lengthen(edge: "front.side_left", by: "20 mm")`,
     /// `Dart(edge: "front.hem", at: 0.5, width: "20 mm", length: "90 mm")`,
     /// `Mirror(piece: "front", name: "lining")`,
-    /// `Sew(a: "front.hem", b: "back.hem", reversed: false)`, `Unsew(edge: "front.side_left")`.
+    /// `Sew(a: "front.hem", b: "back.hem", reversed: false)`,
+    /// `SewOn(piece: "pocket", onto: "front", x: "60 mm", y: "0 mm")`,
+    /// `Unsew(edge: "front.side_left")`, `Remove(piece: "pocket")`.
     #[param(default = Vec::new())]
     alterations: Vec<Alteration>,
 }

@@ -1,4 +1,4 @@
-//! Seams that are sewn and opened by hand.
+//! Seams that are sewn and opened by hand, and pieces that are taken out.
 
 use super::names;
 use toile_core::nearest;
@@ -18,13 +18,7 @@ pub(super) fn sew(
 ) -> Result<(), StageError> {
     for edge in edges {
         names::edge(pattern, edge)?;
-        if let Some(seam) = pattern.seams.iter().find(|s| is_of(s, edge)) {
-            return Err(StageError::invalid(format!(
-                "the edge \"{edge}\" is sewn already, in the seam \"{}\"",
-                seam.name
-            ))
-            .hint(format!("open it before: Unsew(edge: \"{edge}\")")));
-        }
+        check_open(pattern, edge)?;
     }
     let [a, b] = edges;
     if a == b {
@@ -50,6 +44,18 @@ pub(super) fn sew(
     Ok(())
 }
 
+/// An edge is sewn to nothing.
+pub(super) fn check_open(pattern: &Pattern, edge: &EdgeRef) -> Result<(), StageError> {
+    match pattern.seams.iter().find(|s| is_of(s, edge)) {
+        Some(seam) => Err(StageError::invalid(format!(
+            "the edge \"{edge}\" is sewn already, in the seam \"{}\"",
+            seam.name
+        ))
+        .hint(format!("open it before: Unsew(edge: \"{edge}\")"))),
+        None => Ok(()),
+    }
+}
+
 /// Opens every seam of an edge or line.
 pub(super) fn unsew(pattern: &mut Pattern, edge: &EdgeRef, cx: &Context) -> Result<(), StageError> {
     let (open, sewn): (Vec<PatternSeam>, Vec<PatternSeam>) =
@@ -60,6 +66,20 @@ pub(super) fn unsew(pattern: &mut Pattern, edge: &EdgeRef, cx: &Context) -> Resu
         false => Ok(()),
         true => Err(unsewn(pattern, edge)),
     }
+}
+
+/// Takes a piece out of the pattern, with every seam that has it.
+pub(super) fn remove(pattern: &mut Pattern, piece: &str, cx: &Context) -> Result<(), StageError> {
+    let p = names::piece(pattern, piece)?;
+    if pattern.pieces.len() == 1 {
+        return Err(StageError::invalid(format!("\"{piece}\" is the only piece"))
+            .hint("take the garment out of the pipeline's input instead"));
+    }
+    pattern.pieces.remove(p);
+    let has = |s: &PatternSeam| s.sides.iter().flatten().any(|u| u.edge.panel == piece);
+    pattern.seams.iter().filter(|s| has(s)).for_each(|s| cx.note(format!("the seam \"{}\" is open", s.name)));
+    pattern.seams.retain(|s| !has(s));
+    Ok(())
 }
 
 fn unsewn(pattern: &Pattern, edge: &EdgeRef) -> StageError {
@@ -91,7 +111,7 @@ fn is_of(seam: &PatternSeam, edge: &EdgeRef) -> bool {
 }
 
 /// The name, numbered where a seam has it.
-fn free_name(pattern: &Pattern, name: &str) -> String {
+pub(super) fn free_name(pattern: &Pattern, name: &str) -> String {
     let is_taken = |name: &str| pattern.seams.iter().any(|s| s.name == name);
     let numbered = (2..).map(|n| format!("{name} {n}"));
     std::iter::once(name.to_owned()).chain(numbered).find(|n| !is_taken(n)).unwrap_or_default()

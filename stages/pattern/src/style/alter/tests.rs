@@ -266,6 +266,80 @@ fn darts_are_sewn_in_the_mirror_image_too() {
     assert_eq!(start(&dart.sides[0][0]), start(&dart.sides[1][0]));
 }
 
+/// The pattern with a pocket of 100 by 120 mm whose origin lies elsewhere.
+fn pocketed() -> Pattern {
+    let mut made = pattern();
+    let corners = [[1.0, 2.0], [1.1, 2.0], [1.1, 2.12], [1.0, 2.12]];
+    let names = ["low", "right", "top", "left"];
+    made.pieces.push(Piece {
+        name: "pocket".into(),
+        outer: PatternLoop {
+            corners: corners.iter().map(|[x, y]| Point2::new(*x, *y)).collect(),
+            edges: names.iter().map(|n| PieceEdge { name: (*n).into(), curve: EdgeCurve::Line }).collect(),
+        },
+        ..Piece::default()
+    });
+    made
+}
+
+#[test]
+fn a_pocket_is_sewn_on_along_all_its_edges_but_the_highest() {
+    let made =
+        run(&pocketed(), "SewOn(piece: \"pocket\", onto: \"front\", x: \"60 mm\", y: \"-40 mm\")").unwrap();
+    let seam = made.seams.last().unwrap();
+    assert_eq!((seam.name.as_str(), seam.kind), ("pocket on front", SeamKind::Patch));
+    let uses = |side: &[EdgeUse]| side.iter().map(|u| (u.edge.to_string(), u.reversed)).collect::<Vec<_>>();
+    let own = ["left", "low", "right"].map(|e| (format!("pocket.{e}"), false));
+    assert_eq!(uses(&seam.sides[0]), own);
+    assert_eq!(uses(&seam.sides[1]), [("front.pocket_place".to_owned(), false)]);
+    let front = made.piece("front").unwrap();
+    let outline = front.outer.points().0;
+    let (lo, hi) = outline.iter().fold((outline[0], outline[0]), |(l, h), p| (l.inf(p), h.sup(p)));
+    let middle = nalgebra::center(&lo, &hi) + Vector2::new(0.06, -0.04);
+    let line = front.line("pocket_place").unwrap();
+    let expected = [[-0.05, 0.06], [-0.05, -0.06], [0.05, -0.06], [0.05, 0.06]];
+    assert_eq!(line.points.len(), 4);
+    for (point, [x, y]) in line.points.iter().zip(expected) {
+        assert!((point - middle - Vector2::new(x, y)).norm() < 1e-12, "{point}");
+    }
+    // And it is open again.
+    let opened = run(&made, "Unsew(edge: \"pocket.low\")").unwrap();
+    assert_eq!(opened.seams, pattern().seams);
+}
+
+#[test]
+fn a_pocket_that_cannot_be_sewn_on_is_refused() {
+    let refused = |alterations: &str| {
+        let e = run(&pocketed(), alterations).unwrap_err();
+        (e.message, e.hint.unwrap())
+    };
+    let (message, hint) = refused("SewOn(piece: \"pocket\", onto: \"front\", x: \"250 mm\", y: \"0 mm\")");
+    assert_eq!(message, "\"front\" could not be cut so: its line pocket_place would lie outside");
+    assert_eq!(hint, "\"pocket\" must lie within \"front\": x: \"0 mm\", y: \"0 mm\" is its middle");
+    let (message, hint) = refused("SewOn(piece: \"pocket\", onto: \"pocket\", x: \"0 mm\", y: \"0 mm\")");
+    assert_eq!(message, "\"pocket\" cannot be sewn onto itself");
+    assert_eq!(hint, "name another piece as `onto`");
+    let (message, hint) = refused(
+        "Sew(a: \"pocket.low\", b: \"front.hem\"), SewOn(piece: \"pocket\", onto: \"front\", x: \"0 mm\", y: \"0 mm\")",
+    );
+    assert_eq!(message, "the edge \"pocket.low\" is sewn already, in the seam \"pocket.low + front.hem\"");
+    assert_eq!(hint, "open it before: Unsew(edge: \"pocket.low\")");
+}
+
+#[test]
+fn a_piece_is_taken_out_and_its_seams_are_open() {
+    let with_lining = "Mirror(piece: \"front\", name: \"lining\"), Sew(a: \"lining.hem\", b: \"front.hem\")";
+    let (made, told, _) = notes(&pattern(), &format!("{with_lining}, Remove(piece: \"lining\")"));
+    assert_eq!(made, pattern());
+    assert_eq!(told.last().unwrap(), "the seam \"lining.hem + front.hem\" is open");
+    let (message, hint) = refused("Remove(piece: \"pocket\")");
+    assert_eq!(message, "there is no piece \"pocket\"");
+    assert_eq!(hint, "the pieces are front, back");
+    let (message, hint) = refused("Remove(piece: \"front\"), Remove(piece: \"back\")");
+    assert_eq!(message, "\"back\" is the only piece");
+    assert_eq!(hint, "take the garment out of the pipeline's input instead");
+}
+
 #[test]
 fn edges_are_sewn_and_seams_opened() {
     let (made, told, warned) = notes(
