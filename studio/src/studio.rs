@@ -302,6 +302,14 @@ impl Studio {
         mesh::places(moving.as_deref().map_or(&[], Vec::as_slice))
     }
 
+    /// The pieces around the body, before they are sewn, as a file.
+    pub(crate) fn start(&self) -> Result<Vec<u8>, StudioFault> {
+        let shown = self.shown();
+        let none = || StudioFault::not_found("there are no pieces around the body yet");
+        let start = shown.start.clone().ok_or_else(none)?;
+        Ok(mesh::garment(&start, &ShownArtifacts { model: None, ..shown }))
+    }
+
     /// The garment of the run before the last edit.
     pub(crate) fn before(&self) -> Result<Vec<u8>, StudioFault> {
         let (shown, before) = {

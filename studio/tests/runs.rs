@@ -50,6 +50,47 @@ fn is_done(state: &Value, kind: &str) -> bool {
 }
 
 #[test]
+fn pieces_are_shown_as_they_start_and_start_where_they_were_dragged() {
+    let dir = folder(COARSE);
+    let served = Served::new(dir.path(), true);
+    let client = &served.client;
+    let state = client.wait("the vest", |s| is_done(s, "full"));
+    let view = client.get("/api/view").json();
+    assert_eq!((&view["start"], &view["unplaced"]), (&json!(true), &json!([])));
+    let places = |part: &str| {
+        let mesh = Mesh::of(client.get(part).body);
+        let front =
+            mesh.head["panels"].as_array().unwrap().iter().find(|p| p["name"] == "front").unwrap().clone();
+        let range = |name: &str| front[name].as_u64().unwrap() as usize;
+        let all = mesh.floats("positions");
+        all[3 * range("first_vertex")..3 * (range("first_vertex") + range("vertices"))].to_vec()
+    };
+    let (start, worn) = (places("/api/start"), places("/api/garment"));
+    assert_eq!(start.len(), worn.len());
+    // A flat piece before the body.
+    let depths = |of: &[f32]| {
+        of.iter()
+            .skip(2)
+            .step_by(3)
+            .copied()
+            .fold([9.0, -9.0], |[lo, hi]: [f32; 2], z| [lo.min(z), hi.max(z)])
+    };
+    let [near, far] = depths(&start);
+    assert!(far - near < 1e-5 && depths(&worn)[1] - depths(&worn)[0] > 0.03);
+    let place = "[(piece: \"front\", middle: (\"0 mm\", \"1200 mm\", \"400 mm\"))]";
+    let set = json!({ "set": { "path": "stages.Arrange.hand_places", "value": place } });
+    let edit = json!({ "edit": state["project"]["edit"], "words": "place front", "changes": [set] });
+    assert_eq!(client.post("/api/edit", &edit).status, 200);
+    client.wait("the run", |s| {
+        s["project"]["can_undo"] == "place front"
+            && s["run"]["edit"] == s["project"]["edit"]
+            && is_done(s, "full")
+    });
+    let moved = places("/api/start");
+    assert!((depths(&moved)[0] - 0.4).abs() < 1e-5 && (depths(&moved)[1] - 0.4).abs() < 1e-5);
+}
+
+#[test]
 fn the_draft_reads_a_drawing_whose_reader_gives_a_file_as_well() {
     let dir = tempfile::tempdir().unwrap();
     let drawing = "<svg xmlns='http://www.w3.org/2000/svg' width='30cm' height='40cm' viewBox='0 0 300 400'>\

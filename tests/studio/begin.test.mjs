@@ -88,6 +88,7 @@ test("a sample is one click away", async () => {
 async function begunWithNotes() {
     const studio = await serve();
     const page = await studio.open({ wait: false });
+    await page.locator("#begin").waitFor();
     const text = { name: "notes.jpg", mimeType: "image/jpeg", buffer: Buffer.from("these are notes") };
     await page.getByLabel("Choose a file").setInputFiles(text);
     await page.getByLabel("Width").fill("52");

@@ -11,7 +11,7 @@ const canvas = garment.getByRole("application");
 const pictures = () => canvas.evaluate((el) => Number(el.dataset.pictures));
 
 /** Colours of the canvas's middle, to see that something is drawn there. */
-const seen = async () => (await canvas.screenshot()).toString("base64");
+const seen = async () => (await canvas.screenshot({ caret: "initial" })).toString("base64");
 
 test("the canvas shows a garment and says how large it is", async () => {
     assert.match(await canvas.getAttribute("aria-label"), /2 panels, \d+ triangles/);
@@ -53,7 +53,7 @@ test("a click on the garment lights its panel in the pattern and its pixel in th
 test("a click on the photo lights the same place on the garment", async () => {
     await page.keyboard.press("Escape");
     const before = await seen();
-    const box = await page.locator("#photo image").first().boundingBox();
+    const box = await page.locator("#photo svg > image").boundingBox();
     await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.6 * box.height);
     await page.locator('#pattern .piece.lit[data-piece="front"]').waitFor();
     assert.notEqual(await seen(), before);

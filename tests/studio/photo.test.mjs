@@ -79,7 +79,7 @@ test("the kind is one of the card's choices, for the pattern and the wearer", as
 
 test("a stroke says what is ground: the stage that takes strokes comes in", async () => {
     await page.getByRole("button", { name: "Mark ground" }).click();
-    const box = await page.locator("#photo image").first().boundingBox();
+    const box = await page.locator("#photo svg > image").boundingBox();
     const state = await change(page, async () => {
         await page.mouse.move(box.x + 0.05 * box.width, box.y + 0.1 * box.height);
         await page.mouse.down();

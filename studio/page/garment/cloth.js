@@ -155,6 +155,17 @@ export function makeCloth(world, draw) {
             place(before, mesh.positions);
             return show(looks);
         },
+        /** Shows a panel moved by so much. */
+        shift(panel, by) {
+            const array = geometry.attributes.position?.array;
+            if (!mesh || !panel || !array) return;
+            cancelAnimationFrame(moving);
+            const first = 3 * panel.first_vertex;
+            for (let i = 0; i < 3 * panel.vertices; i++)
+                array[first + i] = mesh.positions[first + i] + by[i % 3];
+            geometry.attributes.position.needsUpdate = true;
+            draw();
+        },
         /** Goes on to where the garment has come to while it is draped. */
         moveTo(positions) {
             if (mesh && geometry.attributes.position) place(geometry.attributes.position.array, positions);

@@ -9,6 +9,7 @@ import { loadBefore } from "../server/live.js";
 import { spotOf } from "../server/mesh_file.js";
 import { litEdges } from "./edge_line.js";
 import { mountLegend } from "./legend.js";
+import { mountPlaces, placing, placingButton } from "./placing.js";
 import { mountSection } from "./section.js";
 
 const LOOKS = ["texture", "panels", "strain", "pressure", "distance"];
@@ -63,6 +64,7 @@ export function mountGarment(root) {
             { class: "bar", role: "toolbar", label: "garment.tools" },
             h("h2", { word: "tab.garment" }),
             looks,
+            placingButton(),
             Object.entries(layers).map(([name, box]) =>
                 h("label", { class: "line" }, box, h("span", { word: `garment.${name}` })),
             ),
@@ -97,6 +99,7 @@ export function mountGarment(root) {
         const figures = mountLegend(legend);
         const section = mountSection(below, scene);
         let fitted = false;
+        let placed = false;
 
         const choices = whenChanged((names) => {
             const kept = sessionStorage.getItem("toile-looks");
@@ -127,7 +130,8 @@ export function mountGarment(root) {
                 );
             figures.scale(looks.value, cloth.take(mesh, store.view?.view));
             if (looks.value) shownAs();
-            if (!fitted && mesh) frame();
+            if ((!fitted || placed !== store.placing) && mesh) frame();
+            placed = store.placing;
             if (layers.before.checked) loadBefore();
             canvas.setAttribute(
                 "aria-label",
@@ -182,8 +186,11 @@ export function mountGarment(root) {
                 );
             return panel ? { piece: panel.name, spot: spotOf(store.garment, hit.triangle, hit.shares) } : {};
         };
+        const drag = placing(canvas, scene.camera, cloth, found);
         let pointer = null;
-        const point = oncePerFrame(() => pointer && !camera.turning() && hover(found(...pointer)));
+        const point = oncePerFrame(
+            () => pointer && !camera.turning() && !drag.isHeld() && hover(found(...pointer)),
+        );
         canvas.addEventListener("pointermove", (event) => {
             pointer = [event.clientX, event.clientY];
             point();
@@ -199,6 +206,7 @@ export function mountGarment(root) {
             choose(found(box.x + box.width / 2, box.y + box.height / 2));
         });
     }
+    mountPlaces(below);
     mountGirths(below);
 }
 

@@ -15,6 +15,9 @@ export const dart = (edge, at, width, length) =>
 export const mirror = (piece, name) => `Mirror(piece: ${quote(piece)}, name: ${quote(name)})`;
 export const sew = (a, b, reversed = false) =>
     `Sew(a: ${quote(a)}, b: ${quote(b)}${reversed ? ", reversed: true" : ""})`;
+export const remove = (piece) => `Remove(piece: ${quote(piece)})`;
+export const sewOn = (piece, onto, x, y) =>
+    `SewOn(piece: ${quote(piece)}, onto: ${quote(onto)}, x: ${inMm(x)}, y: ${inMm(y)})`;
 export const unsew = (edge) => `Unsew(edge: ${quote(edge)})`;
 
 /** Where `Alter` is added: before what reads the pattern's seams or meshes its pieces. */
@@ -32,7 +35,8 @@ function before() {
     return (inList.at(-1) ?? section)?.id ?? null;
 }
 
-function withItems(items) {
+/** The changes after which these are the alterations. */
+export function withItems(items) {
     const stage = stageNamed("Alter");
     if (!stage) return [{ add: { stage: `Alter(alterations: ${list(items)})`, after: before() } }];
     if (items.length === 0) return [{ remove: stage.path }];

@@ -5,7 +5,9 @@ import { cm, mm, t, term } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { store, watch, whenChanged } from "../server/store.js";
 import { choose, selection } from "../server/selection.js";
-import { alter, dart, lengthen, mirror, reverseSeam, unsew } from "./alterations.js";
+import { takeBack } from "../garment/hand_places.js";
+import { alter, dart, lengthen, mirror, remove, reverseSeam, unsew } from "./alterations.js";
+import { sewOnPart } from "./sew_on.js";
 import { proposalLine, proposalList, proposals } from "./proposals.js";
 
 /** A longer list of seams is opened by who wants to see it. */
@@ -124,7 +126,15 @@ function piecePart(piece) {
         event.preventDefault();
         edit(t("edit.mirror", { piece: piece.name }), () => alter(mirror(piece.name, name.value)));
     });
-    return [h("h3", {}, piece.name), h("p", { class: "hint", word: "piece.how" }), form];
+    const out = h("button", {
+        word: "piece.remove",
+        onclick: () =>
+            edit(t("edit.removePiece", { piece: piece.name }), () => [
+                ...alter(remove(piece.name)),
+                ...takeBack(piece.name),
+            ]),
+    });
+    return [h("h3", {}, piece.name), h("p", { class: "hint", word: "piece.how" }), form, sewOnPart(piece), out];
 }
 
 function seamList(seams) {

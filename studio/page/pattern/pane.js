@@ -78,7 +78,7 @@ export function mountPattern(root) {
 
     function sizes() {
         const scale = zoom.scale();
-        drawing.style.setProperty("--px", String(scale));
+        drawing.style.setProperty("--px", `${scale}px`);
         for (const el of drawing.querySelectorAll(".corner")) el.setAttribute("r", 5.5 * scale);
         for (const el of drawing.querySelectorAll(".notch")) el.setAttribute("r", 2.5 * scale);
         spot.setAttribute("r", 6 * scale);

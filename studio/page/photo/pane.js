@@ -103,7 +103,7 @@ export function mountPhoto(root) {
     // Marks keep their size on the screen however near the photo is looked at.
     function sizes() {
         const scale = zoom.scale();
-        drawing.style.setProperty("--px", String(scale));
+        drawing.style.setProperty("--px", `${scale}px`);
         spot.setAttribute("r", 6 * scale);
         for (const el of marks.querySelectorAll("circle")) el.setAttribute("r", 7 * scale);
     }

@@ -35,11 +35,11 @@ const loadText = latest(async () => {
 
 let seenBody = "";
 
-const loadView = latest(async () => {
+export const loadView = latest(async () => {
     store.view = await getJson("/api/view");
     tell("view");
-    if (store.view.garment) {
-        const bytes = await getBytes("/api/garment");
+    if (store.placing ? store.view.start : store.view.garment) {
+        const bytes = await getBytes(store.placing ? "/api/start" : "/api/garment");
         store.garment = bytes && readMesh(bytes);
     } else {
         store.garment = null;
@@ -58,7 +58,7 @@ const loadView = latest(async () => {
 /** Where the garment has come to while it is draped; nothing of another mesh than the one that is shown. */
 const loadMoving = latest(async () => {
     const moving = readMesh(await getBytes("/api/moving"));
-    if (moving.vertices !== store.garment?.vertices || !store.state.moving) return;
+    if (store.placing || moving.vertices !== store.garment?.vertices || !store.state.moving) return;
     store.garment.positions = moving.positions;
     tell("moving");
 });

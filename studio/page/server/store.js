@@ -15,6 +15,8 @@ export const store = {
     garment: null,
     before: null,
     body: null,
+    /** Whether the garment is shown as its pieces start, so that they can be placed. */
+    placing: false,
     /** Cards of all stages by name. */
     cards: new Map(),
     measures: null,

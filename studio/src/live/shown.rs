@@ -37,6 +37,8 @@ pub(crate) struct ShownArtifacts {
     pub(crate) read: Option<Arc<ReadPattern>>,
     /// As the last stage left it.
     pub(crate) pattern: Option<Arc<Pattern>>,
+    /// Its pieces around the body, before they are sewn.
+    pub(crate) start: Option<Arc<Garment>>,
     pub(crate) garment: Option<Arc<Garment>>,
     /// The garment's textures; none before it has any.
     pub(crate) model: Option<Arc<Model>>,
@@ -71,6 +73,9 @@ impl ShownArtifacts {
         } else if kind == Garment::KIND {
             self.garment = one(value);
             self.model = None;
+            if self.start.is_none() {
+                self.start = self.garment.clone();
+            }
         } else if kind == Model::KIND {
             self.model = one(value);
         } else if kind == Body::KIND {
@@ -101,6 +106,7 @@ impl ShownArtifacts {
             plan: self.plan.clone().or_else(|| before.plan.clone()),
             read: self.read.clone().or_else(|| before.read.clone()),
             pattern: self.pattern.clone().or_else(|| before.pattern.clone()),
+            start: self.start.clone().or_else(|| before.start.clone()),
             garment,
             model,
             body: self.body.clone().or_else(|| before.body.clone()),

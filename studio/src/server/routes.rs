@@ -26,9 +26,9 @@ const SCALE: HeaderName = HeaderName::from_static("x-scale");
 const POSTS: [&str; 10] = ["edit", "sew", "undo", "redo", "save", "run", "stop", "upload", "begin", "print"];
 
 /// Requests by GET; some go on with a name behind `/`.
-const GETS: [&str; 14] = [
-    "state", "events", "cards", "photo", "mask", "view", "garment", "moving", "before", "body", "texture",
-    "out", "measures", "trade",
+const GETS: [&str; 15] = [
+    "state", "events", "cards", "photo", "mask", "view", "garment", "moving", "start", "before", "body",
+    "texture", "out", "measures", "trade",
 ];
 
 /// Answers a request that the guard has let in.
@@ -97,6 +97,7 @@ fn get(studio: &Studio, what: &str, name: &str) -> Result<HttpAnswer, StudioFaul
         ("view", "") => Ok(as_json(&studio.view())),
         ("garment", "") => Ok(bytes(MESH, studio.garment()?.to_vec())),
         ("moving", "") => Ok(bytes(MESH, studio.moving())),
+        ("start", "") => Ok(bytes(MESH, studio.start()?)),
         ("before", "") => Ok(bytes(MESH, studio.before()?)),
         ("body", "") => Ok(bytes(MESH, studio.body()?)),
         ("out", "") => Ok(as_json(&studio.written())),

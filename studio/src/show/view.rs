@@ -30,6 +30,8 @@ pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>
         "outlines": shown.outlines.iter().filter_map(|(name, o)| outline(name, o)).collect::<Vec<_>>(),
         "pattern": pieces.map(|(pieces, seams)| json!({ "pieces": pieces, "seams": seams })),
         "proposals": read.map_or(json!([]), |read| proposals(read, shown.pattern.as_deref())),
+        "start": shown.start.is_some(),
+        "unplaced": shown.pattern.as_deref().map_or_else(Vec::new, toile_pattern::place::undecided),
         "garment": shown.garment.is_some(),
         "body": shown.body.is_some(),
         "figures": figures.map(figures_json),
