@@ -15,8 +15,8 @@ fi
 TOILE_BIN="$(realpath "$TOILE_BIN")"
 tools="${STUDIO_TOOLS:-target/studio}"
 mkdir -p "$tools"
-if [ ! -d "$tools/node_modules/axe-core" ] || [ ! -d "$tools/node_modules/playwright-core" ]; then
-    # Later versions ask Firefox for what it does not know yet.
+# Later versions ask Firefox for what it does not know yet.
+if [ ! -d "$tools/node_modules/axe-core" ] || ! grep -qs '"version": "1\.61\.' "$tools/node_modules/playwright-core/package.json"; then
     npm install --silent --no-save --no-fund --no-audit --prefix "$tools" playwright-core@1.61 axe-core@4
 fi
 STUDIO_TOOLS="$(realpath "$tools")"

@@ -41,6 +41,17 @@ test("a piece is dragged, and the file says where it starts", async () => {
     await settled(page);
 });
 
+test("a piece that is let go beside the view goes back", async () => {
+    const before = (await stateOf(page)).project.edit;
+    const box = await canvas.boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x - 300, box.y + box.height / 2, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForTimeout(500);
+    assert.equal((await stateOf(page)).project.edit, before);
+});
+
 test("a place in figures, and a turn", async () => {
     const field = garment.getByLabel(/^Forwards/);
     const before = await depth();
@@ -49,6 +60,12 @@ test("a place in figures, and a turn", async () => {
         await field.press("Tab");
     });
     assert.ok(Math.abs((await depth()) - before - 5) < 0.06);
+    for (const wrong of ["1e9", ""]) {
+        const now = await depth();
+        await field.fill(wrong);
+        await field.press("Tab");
+        assert.equal(await depth(), now, `"${wrong}" gives the figure before back`);
+    }
     const turned = await change(page, () => garment.getByRole("button", { name: "Turn left" }).press("Enter"));
     assert.match(handPlaces(turned.text), /turn: \(0, 15, 0\)/);
     const tilted = await change(page, () => garment.getByRole("button", { name: "Tilt forwards" }).press("Enter"));
@@ -103,10 +120,17 @@ test("a piece that nothing places is put before the body, or taken out", async (
     const placed = await change(other, () => pane.getByRole("button", { name: "Put it before the body" }).click());
     assert.match(handPlaces(placed.text), /piece: "collar", middle: \("0 mm"/);
     await pane.getByText("Nothing says where collar stands.").waitFor({ state: "detached" });
+    await pane.getByRole("button", { name: "Turn left" }).waitFor();
+    assert.equal(await pane.getByRole("button", { name: "Back to its own place" }).count(), 0, "it has none");
 
     const out = await change(other, () => other.getByRole("button", { name: "Take it out" }).click());
     assert.match(out.text, /Remove\(piece: "collar"\)/);
     assert.equal(handPlaces(out.text), null);
+    await other.locator('.cloth[data-piece="front"]').click();
+    await change(other, () => other.getByRole("button", { name: "Take it out" }).click());
+    await other.locator('.cloth[data-piece="front"]').waitFor({ state: "detached" });
+    await other.locator('.cloth[data-piece="back"]').click();
+    assert.ok(await other.getByRole("button", { name: "Take it out" }).isDisabled(), "the last piece stays");
     await quiet(other);
 });
 
@@ -143,5 +167,11 @@ test("a pocket is sewn onto a piece, and moved on it", async () => {
     const line = pattern.pieces.find(({ name }) => name === "front").lines.find(({ name }) => name === "pocket_place");
     const [left, right] = [0, -1].map((k) => line.points.at(k)[0]);
     assert.ok(Math.abs(right - left - 0.1) < 1e-6);
+    await field.fill("1e9");
+    await field.press("Tab");
+    assert.equal(await field.inputValue(), "8", "no pocket lies beside its piece");
+    const out = await change(other, () => pane.getByRole("button", { name: "Take it out" }).click());
+    assert.match(out.text, /Remove\(piece: "collar"\), Remove\(piece: "pocket"\)/);
+    assert.doesNotMatch(out.text, /SewOn/);
     await quiet(other);
 });

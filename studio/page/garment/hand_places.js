@@ -4,6 +4,7 @@
 import { stageNamed, store } from "../server/store.js";
 import { list, number, quote, tryRead } from "../ron/ron.js";
 import { inMm, metres } from "../ron/lengths.js";
+import { extent } from "./extent.js";
 
 const NO_TURN = [0, 0, 0];
 
@@ -19,26 +20,35 @@ export function handPlaces() {
     }));
 }
 
-/** The middle of the box around a panel. */
-function middleOf(mesh, { first_vertex: first, vertices }) {
-    const places = mesh.positions.subarray(3 * first, 3 * (first + vertices));
-    const [low, high] = [
-        [Infinity, Infinity, Infinity],
-        [-Infinity, -Infinity, -Infinity],
-    ];
-    places.forEach((x, i) => {
-        low[i % 3] = Math.min(low[i % 3], x);
-        high[i % 3] = Math.max(high[i % 3], x);
-    });
-    return low.map((x, k) => (x + high[k]) / 2);
+/** Pieces that something else places: key points, or the piece that they are sewn onto. */
+function placedOtherwise() {
+    const keys = tryRead(stageNamed("Arrange")?.params.key_points)?.items ?? [];
+    const keyed = keys.map(({ fields }) => fields.edge.value.split(".", 1)[0]);
+    const patches = (store.view?.pattern?.seams ?? []).filter(({ kind }) => kind === "patch");
+    return new Set([...keyed, ...patches.flatMap(({ sides }) => sides[0].map((use) => use.piece))]);
 }
 
-/** Where a piece starts now, by hand or by itself; nothing where it has no place. */
+/** Pieces of which neither the file nor a rule says where they stand. */
+export function unplaced() {
+    if (!canPlace()) return [];
+    const given = new Set([...placedOtherwise(), ...handPlaces().map(({ piece }) => piece)]);
+    return (store.view?.unplaced ?? []).filter((piece) => !given.has(piece));
+}
+
+/** Whether a piece has a place by itself. */
+export const hasOwnPlace = (piece) => !(store.view?.unplaced ?? []).includes(piece);
+
+/** Where a piece starts now, by hand or by itself; nothing where it has no place, or none that can be changed by hand. */
 export function placeOf(piece) {
+    const isThere = store.view?.pattern?.pieces.some(({ name }) => name === piece);
+    if (!isThere || placedOtherwise().has(piece)) return null;
     const given = handPlaces().find((place) => place.piece === piece);
     if (given) return given;
     const panel = store.garment?.panels.find(({ name }) => name === piece);
-    return panel ? { piece, middle: middleOf(store.garment, panel), turn: NO_TURN } : null;
+    if (!panel) return null;
+    const [first, end] = [panel.first_vertex, panel.first_vertex + panel.vertices];
+    const { middle } = extent(store.garment.positions.subarray(3 * first, 3 * end));
+    return { piece, middle, turn: NO_TURN };
 }
 
 const text = ({ piece, middle, turn }) =>
@@ -90,14 +100,6 @@ export function turned(place, axis, degrees) {
 
 /** A place in front of the body, for a piece that has none. */
 export function beforeTheBody(piece) {
-    const places = store.body?.positions ?? [];
-    let [top, front] = [1.7, 0.15];
-    if (places.length > 0) {
-        top = front = -Infinity;
-        for (let i = 0; i < places.length; i += 3) {
-            top = Math.max(top, places[i + 1]);
-            front = Math.max(front, places[i + 2]);
-        }
-    }
+    const [, top, front] = store.body ? extent(store.body.positions).high : [0, 1.7, 0.15];
     return { piece, middle: [0, 0.65 * top, front + 0.08], turn: NO_TURN };
 }

@@ -8,30 +8,13 @@ import { choose, hover, selection } from "../server/selection.js";
 import { loadBefore } from "../server/live.js";
 import { spotOf } from "../server/mesh_file.js";
 import { litEdges } from "./edge_line.js";
+import { extent } from "./extent.js";
 import { mountLegend } from "./legend.js";
 import { mountPlaces, placing, placingButton } from "./placing.js";
 import { mountSection } from "./section.js";
 
 const LOOKS = ["texture", "panels", "strain", "pressure", "distance"];
 const VIEWS = { front: 0, side: Math.PI / 2, back: Math.PI };
-
-/** The box around places, as its middle and its largest side. */
-function extent(positions) {
-    const [low, high] = [
-        [Infinity, Infinity, Infinity],
-        [-Infinity, -Infinity, -Infinity],
-    ];
-    for (let i = 0; i < positions.length; i++) {
-        low[i % 3] = Math.min(low[i % 3], positions[i]);
-        high[i % 3] = Math.max(high[i % 3], positions[i]);
-    }
-    return {
-        low,
-        high,
-        middle: low.map((x, k) => (x + high[k]) / 2),
-        size: Math.max(...low.map((x, k) => high[k] - x)),
-    };
-}
 
 export function mountGarment(root) {
     const canvas = h("canvas", {

@@ -4,13 +4,28 @@
 // plane of the screen; beside the pieces a drag turns the view.
 
 import { h, replace } from "../dom/element.js";
-import { cm, t } from "../words/words.js";
+import { numberField } from "../dom/number_field.js";
+import { t } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { loadView } from "../server/live.js";
 import { choose, selection } from "../server/selection.js";
 import { store, watch, whenChanged } from "../server/store.js";
-import { beforeTheBody, canPlace, handPlaces, placeOf, put, takeBack, turned } from "./hand_places.js";
+import {
+    beforeTheBody,
+    canPlace,
+    handPlaces,
+    hasOwnPlace,
+    placeOf,
+    put,
+    takeBack,
+    turned,
+    unplaced,
+} from "./hand_places.js";
 
+/** No piece is put farther than this to a side, in centimetres. */
+const FARTHEST = 300;
+/** A press that moves no farther than this, in pixels, is a click. */
+const CLICK = 4;
 const TURN = 15;
 const TURNS = [
     ["left", "↶", 1, TURN],
@@ -47,12 +62,12 @@ export function placingButton() {
 export function mountPlaces(root) {
     const part = h("div", { class: "places", role: "group", label: "place" });
     root.prepend(part);
-    const draw = whenChanged((on, unplaced, chosen, place) => {
-        part.hidden = !on && unplaced.length === 0;
+    const draw = whenChanged((on, without, chosen, place) => {
+        part.hidden = !on && without.length === 0;
         root.classList.toggle("placing", on);
         replace(
             part,
-            unplaced.map((piece) =>
+            without.map((piece) =>
                 h(
                     "p",
                     {},
@@ -74,29 +89,24 @@ export function mountPlaces(root) {
     });
     watch(["state", "view", "garment", "chosen"], () => {
         const on = store.placing;
-        const given = handPlaces().map(({ piece }) => piece);
-        const unplaced = (store.view?.unplaced ?? []).filter((piece) => !given.includes(piece));
         const chosen = selection.chosen.piece ?? null;
-        draw(on, unplaced, chosen, on && chosen ? placeOf(chosen) : null);
+        const without = unplaced();
+        draw(on, without, chosen, on && chosen && !without.includes(chosen) ? placeOf(chosen) : null);
     });
 }
 
 function form(piece, place) {
-    const given = handPlaces().some((one) => one.piece === piece);
-    const coordinate = (axis, k) => {
-        const input = h("input", {
-            type: "number",
-            step: "any",
-            value: cm(place.middle[k]).replace(/[^\d.-]/g, ""),
-            "data-key": `place-${axis}`,
-        });
-        input.addEventListener("change", () => {
-            if (!input.checkValidity() || input.value === "") return;
-            const middle = place.middle.with(k, Number(input.value) / 100);
-            take(piece, () => put({ ...place, middle }));
-        });
-        return h("label", { class: "line" }, h("span", { word: `place.${axis}` }), input, " cm");
-    };
+    const canGoBack = handPlaces().some((one) => one.piece === piece) && hasOwnPlace(piece);
+    // From the place as it is by then: an edit before this one may be on its way.
+    const change = (to) => take(piece, () => put(to(placeOf(piece) ?? place)));
+    const coordinate = (axis, k) =>
+        numberField(
+            `place.${axis}`,
+            (100 * place.middle[k]).toFixed(1),
+            "cm",
+            { step: "any", min: -FARTHEST, max: FARTHEST, "data-key": `place-${axis}` },
+            (next) => change((now) => ({ ...now, middle: now.middle.with(k, next / 100) })),
+        );
     return [
         h("h3", {}, piece),
         AXES.map(coordinate),
@@ -111,13 +121,13 @@ function form(piece, place) {
                         label: `place.${name}`,
                         tip: `place.${name}`,
                         "data-key": `turn-${name}`,
-                        onclick: () => take(piece, () => put(turned(placeOf(piece) ?? place, axis, degrees))),
+                        onclick: () => change((now) => turned(now, axis, degrees)),
                     },
                     sign,
                 ),
             ),
         ),
-        given &&
+        canGoBack &&
             h("button", {
                 word: "place.back",
                 "data-key": "place-back",
@@ -129,6 +139,7 @@ function form(piece, place) {
 /** Lets pieces be dragged on the canvas. `found(x, y)` tells what lies below a place of the screen. */
 export function placing(canvas, camera, cloth, found) {
     let held = null;
+    let dragged = false;
     /** The camera's direction to the right (0), up (1) or backwards (2), or its place (3). */
     const column = (k) => camera.matrixWorld.elements.slice(4 * k, 4 * k + 3);
     const way = (event) => {
@@ -140,15 +151,17 @@ export function placing(canvas, camera, cloth, found) {
     canvas.addEventListener(
         "pointerdown",
         (event) => {
+            dragged = false;
             if (!store.placing || event.button !== 0 || event.shiftKey) return;
             const { piece, spot } = found(event.clientX, event.clientY);
-            if (!piece) return;
+            const place = piece && placeOf(piece);
+            if (!place) return;
             event.stopImmediatePropagation();
             canvas.focus({ preventScroll: true });
             canvas.setPointerCapture(event.pointerId);
             const [backwards, eye] = [column(2), column(3)];
             const away = spot.position.reduce((sum, x, k) => sum - (x - eye[k]) * backwards[k], 0);
-            held = { piece, away, from: [event.clientX, event.clientY], place: placeOf(piece), by: null };
+            held = { piece, away, from: [event.clientX, event.clientY], place, by: null };
             choose({ piece });
         },
         { capture: true },
@@ -158,16 +171,26 @@ export function placing(canvas, camera, cloth, found) {
         held.by = way(event);
         cloth.shift(panelNamed(held.piece), held.by);
     });
-    const end = (taken) => () => {
+    /** A piece that is let go beside the view goes back: nobody sees where it would be. */
+    const isTaken = ({ type, clientX: x, clientY: y }) => {
+        const { left, right, top, bottom } = canvas.getBoundingClientRect();
+        const isSeen = x >= left && x <= right && y >= top && y <= bottom;
+        return type === "pointerup" && isSeen && Math.hypot(x - held.from[0], y - held.from[1]) > CLICK;
+    };
+    // What ends a drag chooses nothing.
+    canvas.addEventListener("click", (event) => dragged && event.stopImmediatePropagation(), { capture: true });
+    const end = (event) => {
         if (!held) return;
         const { piece, place, by } = held;
+        const taken = isTaken(event);
         held = null;
+        dragged = Boolean(by);
         if (!by) return;
         const middle = place.middle.map((x, k) => x + by[k]);
         if (taken) take(piece, () => put({ ...place, middle }));
         else cloth.shift(panelNamed(piece), [0, 0, 0]);
     };
-    canvas.addEventListener("pointerup", end(true));
-    canvas.addEventListener("pointercancel", end(false));
+    canvas.addEventListener("pointerup", end);
+    canvas.addEventListener("pointercancel", end);
     return { isHeld: () => held !== null };
 }

@@ -15,7 +15,7 @@ export const dart = (edge, at, width, length) =>
 export const mirror = (piece, name) => `Mirror(piece: ${quote(piece)}, name: ${quote(name)})`;
 export const sew = (a, b, reversed = false) =>
     `Sew(a: ${quote(a)}, b: ${quote(b)}${reversed ? ", reversed: true" : ""})`;
-export const remove = (piece) => `Remove(piece: ${quote(piece)})`;
+const remove = (piece) => `Remove(piece: ${quote(piece)})`;
 export const sewOn = (piece, onto, x, y) =>
     `SewOn(piece: ${quote(piece)}, onto: ${quote(onto)}, x: ${inMm(x)}, y: ${inMm(y)})`;
 export const unsew = (edge) => `Unsew(edge: ${quote(edge)})`;
@@ -43,7 +43,7 @@ export function withItems(items) {
     return [{ set: { path: `${stage.path}.alterations`, value: list(items) } }];
 }
 
-const present = () => itemsOf(stageNamed("Alter")?.params.alterations);
+export const present = () => itemsOf(stageNamed("Alter")?.params.alterations);
 
 /** The changes that add alterations. Moves of what was moved last are added up. */
 export function alter(...added) {
@@ -55,6 +55,16 @@ export function alter(...added) {
     }
     return withItems(items);
 }
+
+/** Whether an alteration sews that piece onto another. */
+export function sewsOn(item, piece) {
+    const { name, fields } = tryRead(item);
+    return name === "SewOn" && fields.piece.value === piece;
+}
+
+/** The changes that take a piece out: it is not sewn onto another before. */
+export const takenOut = (piece) =>
+    withItems([...present().filter((item) => !sewsOn(item, piece)), remove(piece)]);
 
 /** One move in the place of two of the same corner or edge. */
 function summed(first, second) {

@@ -1,12 +1,13 @@
 // What can be done with the piece, edge or seam that is chosen; the list of seams where nothing is.
 
 import { h, replace } from "../dom/element.js";
+import { numberField } from "../dom/number_field.js";
 import { cm, mm, t, term } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { store, watch, whenChanged } from "../server/store.js";
 import { choose, selection } from "../server/selection.js";
 import { takeBack } from "../garment/hand_places.js";
-import { alter, dart, lengthen, mirror, remove, reverseSeam, unsew } from "./alterations.js";
+import { alter, dart, lengthen, mirror, reverseSeam, takenOut, unsew } from "./alterations.js";
 import { sewOnPart } from "./sew_on.js";
 import { proposalLine, proposalList, proposals } from "./proposals.js";
 
@@ -17,15 +18,6 @@ const pattern = () => store.view?.pattern;
 
 const names = (side) => side.map(({ piece, edge }) => `${piece}.${edge}`);
 const seamWords = (seam) => seam.sides.map((side) => names(side).join(" + ")).join(" – ");
-
-function field(word, value, props, take) {
-    const input = h("input", { type: "number", value: String(value), ...props });
-    input.addEventListener(
-        "change",
-        () => input.checkValidity() && input.value !== "" && take(Number(input.value)),
-    );
-    return h("label", { class: "line" }, h("span", { word }), input, ` ${props["data-unit"]}`);
-}
 
 /** A dart: place along the edge, width, length. */
 function dartForm(edge) {
@@ -59,10 +51,11 @@ function edgePart(name, edge) {
     const length = 100 * edge.length;
     return [
         h("h3", {}, name),
-        field(
+        numberField(
             "edge.length",
             length.toFixed(1),
-            { step: "0.1", min: "0.5", "data-unit": "cm", "data-key": "length" },
+            "cm",
+            { step: "0.1", min: "0.5", "data-key": "length" },
             (next) =>
                 edit(t("edit.length", { edge: name, length: `${next} cm` }), () =>
                     alter(lengthen(name, (next - length) / 100)),
@@ -126,11 +119,13 @@ function piecePart(piece) {
         event.preventDefault();
         edit(t("edit.mirror", { piece: piece.name }), () => alter(mirror(piece.name, name.value)));
     });
+    const isLast = pattern().pieces.length === 1;
     const out = h("button", {
         word: "piece.remove",
+        disabled: isLast,
         onclick: () =>
             edit(t("edit.removePiece", { piece: piece.name }), () => [
-                ...alter(remove(piece.name)),
+                ...takenOut(piece.name),
                 ...takeBack(piece.name),
             ]),
     });

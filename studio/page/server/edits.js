@@ -6,19 +6,22 @@ import { takeState } from "./live.js";
 import { sayError, sayWord } from "../head/status.js";
 
 let queue = Promise.resolve();
+/** The number of the text after the last edit of this page. */
+let answered = 0;
 
 /** Runs `send(edit number)` when all before it are answered. Gives whether it was taken. */
 function inTurn(send) {
     store.pending += 1;
     const turn = queue.then(async () => {
         try {
-            const known = store.state.project.edit;
-            const { edit } = await send(known).catch(async (error) => {
+            // What the last edit made of the text may still be on its way: the next one is made from it.
+            if (store.state.project.edit < answered) takeState(await getJson("/api/state"));
+            const { edit } = await send(store.state.project.edit).catch(async (error) => {
                 if (!(error instanceof Refusal) || error.code !== "stale") throw error;
                 takeState(await getJson("/api/state"));
                 return send(store.state.project.edit);
             });
-            store.state.project.edit = Math.max(edit, store.state.project.edit);
+            answered = edit;
             return true;
         } catch (error) {
             sayError(error);
