@@ -107,6 +107,19 @@ fn a_kind_that_is_said_to_the_style_alone() {
 }
 
 #[test]
+fn landmarks_that_are_said_to_the_style_alone() {
+    mended(&Case {
+        pipeline: "photo.ron",
+        file: Some(("mine.jpg", photo::boxy_tee())),
+        set: &[PHOTO[0], PHOTO[1], "style.landmarks={\"armpit_left\": (0.77, 0.376)}"],
+        until: "Neckline",
+        code: 0,
+        told: "`style` is cut by other `landmarks` than `body` measures by",
+        offered: &["body.landmarks={\"armpit_left\": (0.77, 0.376)}"],
+    });
+}
+
+#[test]
 fn a_mannequin_that_the_garment_is_too_small_for() {
     mended(&Case {
         pipeline: "photo_skirt.ron",

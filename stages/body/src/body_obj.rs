@@ -84,7 +84,7 @@ pub struct BodyObj {
     #[param(default = Up::Y)]
     up: Up,
     /// Turn about the vertical, counter-clockwise from above, after which the body faces +Z.
-    #[param(default = 0.0, min = -360.0, max = 360.0, unit = "degrees")]
+    #[param(default = 0.0, min = -360.0, max = 360.0, unit = "deg")]
     turn: f64,
 }
 

@@ -43,14 +43,17 @@ pub struct Mannequin {
     /// 110 cm for a child.
     #[param(default = None, min = 0.8, max = 2.1)]
     height: Option<Length>,
-    /// Girth at the fullest part of the chest; 88, 100 or 58 cm likewise, of a child of a given
-    /// height that which is usual.
+    /// Girth at the fullest part of the chest; where neither it nor a size is given, 88 cm for a
+    /// woman, 100 cm for a man, 58 cm for a child, or what is usual for a child of the given
+    /// height.
     #[param(default = None, min = 0.4, max = 1.7)]
     bust: Option<Length>,
-    /// Girth at the waist; 70, 86 or 54 cm, of a child likewise.
+    /// Girth at the waist; where it is not given, 70 cm for a woman, 86 cm for a man, 54 cm for a
+    /// child, or what is usual for a child of the given height.
     #[param(default = None, min = 0.35, max = 1.7)]
     waist: Option<Length>,
-    /// Girth at the fullest part of the seat; 96, 100 or 60 cm, of a child likewise.
+    /// Girth at the fullest part of the seat; where it is not given, 96 cm for a woman, 100 cm for
+    /// a man, 60 cm for a child, or what is usual for a child of the given height.
     #[param(default = None, min = 0.4, max = 1.7)]
     hip: Option<Length>,
     /// Whose proportions; a woman's where it is not given, a child's below 135 cm, between the two
@@ -74,7 +77,7 @@ pub struct Mannequin {
     #[param(default = None, min = 0.25, max = 1.1)]
     inseam: Option<Length>,
     /// Angle between the arms and the vertical; 60 suits sleeves of shirts laid flat.
-    #[param(default = 60.0, min = 30.0, max = 75.0, unit = "degrees")]
+    #[param(default = 60.0, min = 30.0, max = 75.0, unit = "deg")]
     arm_angle: f64,
     /// Length of the mesh's edges; small bodies get shorter ones, hands, head and feet too.
     #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades, finer = "less")]

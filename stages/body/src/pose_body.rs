@@ -20,7 +20,7 @@ pub struct PoseBody {
     /// Angle between the upper arms and the vertical, from the middle between shoulder and armpit
     /// to the elbow; where it is not given, 28 degrees or as near to it as the trunk lets the arms,
     /// and arms that hang lower stay.
-    #[param(default = None, min = 5.0, max = 150.0, unit = "degrees")]
+    #[param(default = None, min = 5.0, max = 150.0, unit = "deg")]
     arm_angle: Option<f64>,
 }
 

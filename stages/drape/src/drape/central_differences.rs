@@ -18,8 +18,8 @@ use toile_core::{ByPlace, Known, Node};
 /// limit 2/omega_max, which is computed from the stiffness and again as cloth stiffens.
 /// `SpringStitcher` and `SpringDraper` do the same with springs. Seams are sewn first, without
 /// weight, for as long as they take. In a scene it then follows the scene's phases for their
-/// seconds, those before the first with weight less by the time of sewing; else it drapes until
-/// rest. Cloth that falls past the body is an error.
+/// seconds; the time of sewing is taken off those before the first phase with weight; else it
+/// drapes until rest. Cloth that falls past the body is an error.
 #[stage(
     role = Draper,
     version = 6,

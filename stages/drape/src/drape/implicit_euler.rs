@@ -17,9 +17,9 @@ use toile_core::{ByPlace, Known, Node};
 /// Promises: stable at any step, never gains energy, free fall exact, each step solved to
 /// `tolerance` newtons. Damps what the step does not resolve: a mode of frequency w loses the
 /// factor 1/sqrt(1 + (w dt)^2) a step. Seams are sewn first, without weight, for as long as they
-/// take. In a scene it then follows the scene's phases for their seconds, those before the first
-/// with weight less by the time of sewing; else it drapes until rest. Cloth that falls past the
-/// body is an error.
+/// take. In a scene it then follows the scene's phases for their seconds; the time of sewing is
+/// taken off those before the first phase with weight; else it drapes until rest. Cloth that falls
+/// past the body is an error.
 #[stage(
     role = Draper,
     version = 6,

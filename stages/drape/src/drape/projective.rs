@@ -13,12 +13,12 @@ use toile_core::{ByPlace, Known, Node};
 
 /// Sews the garment and lets it fall and settle, by projective dynamics.
 ///
-/// Promises that every turn lowers the energy of the step and that a step costs the same always;
-/// what `iterations` leave undone shows as cloth too stiff against turning and slow to fall into
-/// folds. Warp and weft count as one stiffness. Seams are sewn first, without weight, for as long
-/// as they take. In a scene it then follows the scene's phases for their seconds, those before the
-/// first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
-/// the body is an error.
+/// Promises that every iteration lowers the energy of the step and that a step costs the same
+/// always; what `iterations` leave undone shows as cloth too stiff against rotation and slow to
+/// fall into folds. Warp and weft count as one stiffness. Seams are sewn first, without weight, for
+/// as long as they take. In a scene it then follows the scene's phases for their seconds; the time
+/// of sewing is taken off those before the first phase with weight; else it drapes until rest.
+/// Cloth that falls past the body is an error.
 #[stage(
     role = Draper,
     version = 5,

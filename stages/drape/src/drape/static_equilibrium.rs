@@ -87,8 +87,8 @@ pub struct StaticEquilibrium {
     /// What cloth resists when it is folded.
     #[param(default = BendingModel::Quadratic, trades)]
     pub bending: BendingModel,
-    /// At rest, no vertex but the share `non_static` gains more than this in a step that proves
-    /// rest (see `proof`).
+    /// At rest, no vertex gains more than this in a step that proves rest (see `proof`), but for
+    /// the share `non_static` of the vertices.
     #[param(default = 5e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// The share of the vertices that may gain more, for garments that lie where the skin of a body

@@ -18,9 +18,9 @@ use toile_core::{ByPlace, Known, Node};
 /// elements as `substeps` grow, from the soft side. For pictures and first looks: on a skirt of
 /// 2,200 triangles the default leaves 1 % of the edges strained by 5.4 %, over the limit of
 /// `Measure`; 8 substeps keep it. Seams are sewn first, without weight, for as long as they take.
-/// In a scene it then follows the scene's phases for their seconds, those before the first with
-/// weight less by the time of sewing; else it drapes until rest. Cloth that falls past the body is
-/// an error.
+/// In a scene it then follows the scene's phases for their seconds; the time of sewing is taken off
+/// those before the first phase with weight; else it drapes until rest. Cloth that falls past the
+/// body is an error.
 #[stage(
     role = Draper,
     version = 5,

@@ -58,10 +58,10 @@ pub struct Measure {
     /// from `max_strain` on a warning names the panel.
     #[param(default = 0.25, min = 0.0, max = 10.0)]
     max_tight: f64,
-    /// Least share of every panel that must still be in its place on the body: 1 less the mean way
-    /// down of all that it is sewn to (of cloth that starts lying, of its upper edge), from where
-    /// it started or from the top of the body under it, as a share of the height of its tallest
-    /// piece.
+    /// Least share of every panel that must still be in its place on the body. It is 1 less the
+    /// share by which the panel with all that it is sewn to has come down: in the mean (of cloth
+    /// that starts lying, its upper edge), from where it started or from the top of the body under
+    /// it, as a share of the height of the tallest of these pieces.
     #[param(default = 0.8, min = 0.0, max = 1.0)]
     least_on_body: f64,
     /// Most pairs of a triangle of the garment and one of the body that cross.

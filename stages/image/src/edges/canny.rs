@@ -24,13 +24,13 @@ use toile_core::prelude::*;
 )]
 pub struct Canny {
     /// Gradient above which a pixel belongs to an edge that is strong elsewhere.
-    #[param(default = 20.0, min = 0.0, max = 2000.0, unit = "Sobel units: 8 x grey levels a pixel")]
+    #[param(default = 20.0, min = 0.0, max = 2000.0, unit = "Sobel units: 8 × grey levels a pixel")]
     low: f64,
     /// Gradient above which a pixel starts an edge.
-    #[param(default = 60.0, min = 0.0, max = 2000.0, unit = "Sobel units: 8 x grey levels a pixel")]
+    #[param(default = 60.0, min = 0.0, max = 2000.0, unit = "Sobel units: 8 × grey levels a pixel")]
     high: f64,
     /// Standard deviation of the smoothing: more quietens weave and grain but rounds detail off.
-    #[param(default = 1.4, min = 0.3, max = 10.0, unit = "pixels", trades)]
+    #[param(default = 1.4, min = 0.3, max = 10.0, unit = "px", trades)]
     sigma: f64,
     /// How much smoother the outline is between its corners than the edge that was seen: 2 to 3
     /// smooths the ragged rim of a small photo, 1 keeps every wave.

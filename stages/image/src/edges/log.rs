@@ -20,7 +20,7 @@ use toile_core::prelude::*;
 )]
 pub struct LaplacianOfGaussian {
     /// Standard deviation of the smoothing.
-    #[param(default = 1.6, min = 0.3, max = 10.0, unit = "pixels", trades)]
+    #[param(default = 1.6, min = 0.3, max = 10.0, unit = "px", trades)]
     sigma: f64,
     /// Change of the signal over one pixel at a zero crossing that counts as an edge.
     #[param(default = 1.0, min = 0.0, max = 500.0, unit = "grey levels a pixel squared")]

@@ -19,7 +19,7 @@ use toile_core::prelude::*;
 )]
 pub struct Prewitt {
     /// Gradient that counts as an edge.
-    #[param(default = 45.0, min = 0.0, max = 1500.0, unit = "6 x grey levels a pixel")]
+    #[param(default = 45.0, min = 0.0, max = 1500.0, unit = "6 × grey levels a pixel")]
     threshold: f64,
 }
 

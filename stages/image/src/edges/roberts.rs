@@ -21,7 +21,7 @@ use toile_core::prelude::*;
 )]
 pub struct Roberts {
     /// Gradient that counts as an edge.
-    #[param(default = 12.0, min = 0.0, max = 400.0, unit = "1.4 x grey levels a pixel")]
+    #[param(default = 12.0, min = 0.0, max = 400.0, unit = "1.4 × grey levels a pixel")]
     threshold: f64,
 }
 

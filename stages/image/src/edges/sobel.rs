@@ -21,7 +21,7 @@ use toile_core::prelude::*;
 )]
 pub struct Sobel {
     /// Gradient that counts as an edge.
-    #[param(default = 60.0, min = 0.0, max = 2000.0, unit = "8 x grey levels a pixel")]
+    #[param(default = 60.0, min = 0.0, max = 2000.0, unit = "8 × grey levels a pixel")]
     threshold: f64,
 }
 

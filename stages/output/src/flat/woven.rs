@@ -27,7 +27,7 @@ pub struct Woven {
     #[param(default = 0.01, min = 1e-4, max = 1.0)]
     pub strain: f64,
     /// The angle at which the curve of shear is read.
-    #[param(default = 5.0, min = 0.01, max = 60.0, unit = "degrees")]
+    #[param(default = 5.0, min = 0.01, max = 60.0, unit = "deg")]
     pub angle: f64,
     /// Most steps of Newton's method a piece.
     #[param(default = 100, min = 1, max = 10_000, trades)]

@@ -76,10 +76,10 @@ const MIDDLE: f64 = 0.65;
 /// pattern says nothing, fronts, backs, sleeves, legs in one piece and waistbands are placed by
 /// their names, seams and sizes. A sleeve or cuff that is cut narrower than the arm by more than
 /// cloth stretches is refused before anything is sewn. What was decided and moved is in the log.
-/// Other starts are left for `StaticEquilibrium`, which tries them where the garment does not sew:
-/// where legs are swung, or the garment is raised until its shoulder seams clear the shoulders, the
-/// places without that; the pieces without the gaps that the pattern leaves between those above
-/// each other; and skirts on cones around the legs.
+/// `StaticEquilibrium` is given other starts, which it tries where the garment does not sew from
+/// this one: legs that were swung, and a garment that was raised until its shoulder seams clear the
+/// shoulders, where the pattern puts them; tiers of the pattern without the gaps between them;
+/// skirts on cones around the legs.
 #[stage(
     role = Placement,
     version = 10,
@@ -89,7 +89,7 @@ const MIDDLE: f64 = 0.65;
 )]
 pub struct Arrange {
     /// Whether sleeves and cuffs are bent around the arms, and flat halves of legs that miss the
-    /// body's are swung before them; where the pattern puts them otherwise.
+    /// body's legs are swung to where those are. Without it they stand where the pattern puts them.
     #[param(default = true)]
     bend: bool,
     /// Least distance of a bent piece from the arm.

@@ -25,7 +25,7 @@ pub struct Taubin {
     /// Share of the inward step.
     #[param(default = 0.5, min = 0.0, max = 1.0)]
     pub(crate) lambda: f64,
-    /// Share of the outward step, negative and larger than lambda.
+    /// Share of the outward step: negative, and greater in magnitude than lambda.
     #[param(default = -0.53, min = -1.1, max = 0.0)]
     pub(crate) mu: f64,
     /// Number of rounds.

@@ -37,7 +37,7 @@ const BESIDE: f32 = 1e-3;
 pub struct DepthView {
     /// The angle from the first photo's camera to the second one's, positive where the camera went
     /// to the right or the object turned to the left.
-    #[param(min = -60.0, max = 60.0, unit = "degrees")]
+    #[param(min = -60.0, max = 60.0, unit = "deg")]
     turn: f64,
     /// The focal length of the camera; it is not estimated.
     #[param(default = Lens::Equivalent(26.0))]

@@ -39,7 +39,8 @@ pub struct LightField {
     /// from one to the next below. 0 for photos that are turned or cut so that it stays in place.
     #[param(default = 0.0, min = -2000.0, max = 2000.0, unit = "px")]
     focus: f64,
-    /// Every how manieth row and column of the grid is used, to see what fewer photos give.
+    /// Rows and columns of the grid that are used: all (1), every second (2), every third (3), to
+    /// see what fewer photos give.
     #[param(default = 1, min = 1, max = 64)]
     every: usize,
 }

@@ -25,7 +25,7 @@ const SCRIPT: &str = include_str!("report.js");
 /// One file with no links to others; opens in any browser, light or dark.
 ///
 /// Its times are those of the run that made the page: where all that it reports on comes from the
-/// cache, the page does as well.
+/// cache, so does the page, with the times of that earlier run.
 #[stage(
     role = Writer,
     version = 3,

@@ -35,13 +35,13 @@ type CutAndSewn = (Pattern, Set<Outline>, SewingPlan);
 /// Stands behind what makes the pattern: the style, `Neckline`, or a reader. Alterations act one
 /// after the other. Edges are those of the pattern, `"piece.edge"`; y is up and x to the right as
 /// seen from outside the wearer. `MoveCorner` and `MoveEdge` move, and the edges beside follow and
-/// keep their shape. `Lengthen` makes one edge longer: one that is more upright than level gives at
-/// its lower end, one more level at both ends by half. `Dart` is cut out of an edge, which becomes
-/// `EDGE_1`, `EDGE_dart_1`, `EDGE_dart_2` and `EDGE_2`, and keeps its seams. `Mirror` adds a piece,
-/// or makes one that is there the mirror image. `Sew` pairs the start of one edge with the end of
-/// the other, as pieces laid face to face meet; `SewOn` sews all edges of a piece but the highest
-/// onto another piece, as a pocket. `Unsew` opens every seam of an edge, `Remove` takes a piece out
-/// and opens its seams. A seam whose sides differ now is eased or gathered, with
+/// keep their shape. `Lengthen` makes one edge longer: an edge that is nearer to upright than to
+/// level grows at its lower end, any other at both ends by half. `Dart` is cut out of an edge,
+/// which becomes `EDGE_1`, `EDGE_dart_1`, `EDGE_dart_2` and `EDGE_2`, and keeps its seams. `Mirror`
+/// adds a piece, or makes one that is there the mirror image. `Sew` pairs the start of one edge
+/// with the end of the other, as pieces laid face to face meet; `SewOn` sews all edges of a piece
+/// but the highest onto another piece, as a pocket. `Unsew` opens every seam of an edge, `Remove`
+/// takes a piece out and opens its seams. A seam whose sides differ now is eased or gathered, with
 /// a note. Pieces of photos take their picture along.
 #[stage(
     role = Style,

@@ -18,9 +18,10 @@ use crate::style::block::template::fit::Fit;
 use crate::style::block::template::flat::Side;
 use crate::style::block::template::form::Form;
 use crate::style::block::template::piece_role::Layer;
+use crate::style::block::template::said;
 use std::collections::BTreeMap;
 use toile_body::Mannequin;
-use toile_core::param::ron_options;
+use toile_core::param::{ron_options, ron_text};
 use toile_core::prelude::*;
 use toile_core::{Node, StageMeta};
 
@@ -118,7 +119,7 @@ const SPREAD: f64 = 4.0;
 /// it was taken for. State a body of your own where you know the wearer.
 #[stage(
     role = Body,
-    version = 11,
+    version = 12,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -136,6 +137,10 @@ pub struct Fitting {
     /// Whether a network looks at the photo, too, as in `Block`.
     #[param(default = true)]
     pub(super) network: bool,
+    /// Where a person sees landmarks in the photo of the front, as in `Block`: the garment is
+    /// measured between them.
+    #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
+    pub(super) landmarks: BTreeMap<String, (f64, f64)>,
 }
 
 #[stage]
@@ -149,6 +154,7 @@ impl Fitting {
         let front = outlines.get(FRONT).ok_or_else(refusal::no_front)?;
         let photo = photos.as_ref().and_then(|all| all.get(FRONT));
         let photo = photo.map(|photo| SeenPhoto::of(photo, self.network)).transpose()?;
+        let forms = said::with_all(self.style.forms(), &self.landmarks)?;
         let fitted = |stray, complete| {
             let block = Block {
                 style: self.style,
@@ -158,9 +164,9 @@ impl Fitting {
                 waist: Waist::Plain,
                 front: Front::Whole,
                 network: self.network,
-                landmarks: BTreeMap::new(),
+                landmarks: self.landmarks.clone(),
             };
-            block.fitted(FRONT, front, photo.as_ref(), self.style.forms(), &cx.for_entry(FRONT))
+            block.fitted(FRONT, front, photo.as_ref(), forms.clone(), &cx.for_entry(FRONT))
         };
         let other = match self.complete {
             Complete::Nothing => Complete::Mirror,
@@ -226,7 +232,18 @@ impl Fitting {
             let what = format!("`style` completes `{cut}`, and `body` measures with `complete: {measured}`");
             all.push(set(what, "complete", cut));
         }
+        if block.landmarks != self.landmarks {
+            let what = "`style` is cut by other `landmarks` than `body` measures by".to_owned();
+            let said = ron_text(&block.landmarks);
+            let hint = format!("say the same to both: --set 'body.landmarks={said}'");
+            all.push(StageError::invalid(what).hint(hint).at("landmarks"));
+        }
         all
+    }
+
+    /// Landmarks that no garment has.
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        said::known(&self.landmarks).err().into_iter().collect()
     }
 }
 

@@ -161,3 +161,26 @@ fn a_fork_that_is_said_to_lie_lower_leaves_shorter_legs() {
     let inseam = |cut: &CutShirt| length(&cut.0, "left_leg_front", "inseam");
     assert!(inseam(&plain) - inseam(&low) > 15.0, "{} {}", inseam(&plain), inseam(&low));
 }
+
+#[test]
+fn the_wearer_is_measured_between_the_landmarks_that_are_said() {
+    let photo = shapes::photo_from(image::RgbImage::new(SIZE[0] as u32, SIZE[1] as u32));
+    let plain = said(Block::default(), &[]).unwrap();
+    // 60 px are 29 mm: the neck lies so much lower.
+    let lower = ["neck_left", "neck_right"].map(|name| {
+        let p = at(&plain, name);
+        (name.to_owned(), ((p.x + 0.5) / SIZE[0], (p.y + 60.5) / SIZE[1]))
+    });
+    let told = |landmarks: BTreeMap<String, (f64, f64)>| {
+        let cx = Context::quiet();
+        let front: Set<Outline> = [("front".to_owned(), shirt())].into_iter().collect();
+        let photos: Set<Photo> = [("front".to_owned(), photo.clone())].into_iter().collect();
+        let style = BlockStyle::TShirt;
+        let fitting = Fitting { style, network: false, landmarks, ..Fitting::default() };
+        fitting.run(front, Some(photos), &cx).unwrap();
+        cx.take_remarks().notes.concat()
+    };
+    let long = |told: &str| told.split(", ").find_map(|part| part.strip_suffix(" cm long fits it")?.parse().ok());
+    let [found, said]: [Option<f64>; 2] = [told(BTreeMap::new()), told(lower.into())].map(|t| long(&t));
+    assert_eq!([found, said], [Some(68.0), Some(65.0)]);
+}
