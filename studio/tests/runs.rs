@@ -270,6 +270,29 @@ fn a_run_that_fails_says_where() {
 }
 
 #[test]
+fn what_a_failed_run_did_not_make_anew_tells_the_text_that_it_comes_from() {
+    let dir = folder(COARSE);
+    let served = Served::new(dir.path(), true);
+    let client = &served.client;
+    let first = client.wait("the vest", |s| is_done(s, "full"))["project"]["edit"].clone();
+    let edits = || {
+        let view = client.get("/api/view").json();
+        ["pattern_edit", "start_edit", "garment_edit"].map(|name| view[name].clone())
+    };
+    assert_eq!(edits(), [first.clone(), first.clone(), first.clone()]);
+    // The pieces are cut before the stage that does not find one of them.
+    let place = "[(piece: \"sleeve\", middle: (\"0 mm\", \"1200 mm\", \"400 mm\"))]";
+    let set = json!({ "set": { "path": "stages.Arrange.hand_places", "value": place } });
+    let edit = json!({ "edit": first, "words": "place sleeve", "changes": [set] });
+    assert_eq!(client.post("/api/edit", &edit).status, 200);
+    let state = client.wait("the failure", |s| s["run"]["state"] == "failed");
+    assert_eq!(state["run"]["error"]["stage"], "Arrange");
+    let now = state["project"]["edit"].clone();
+    assert_ne!(now, first);
+    assert_eq!(edits(), [now, first.clone(), first]);
+}
+
+#[test]
 fn news_come_by_themselves() {
     let dir = folder(MASKS);
     let served = Served::new(dir.path(), true);

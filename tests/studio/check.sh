@@ -4,7 +4,8 @@
 #
 #     tests/studio/check.sh [TEST...]     files of this folder, all without one
 #
-# TOILE_BIN is the program, built anew without one; BROWSERS the browsers, "chromium firefox" without any.
+# TOILE_BIN is the program, built anew without one; BROWSERS the browsers, "chromium firefox" without any; PAGE=studio/page takes
+# the page's scripts and styles from that folder, not from the program, so that they can be edited without building it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -23,7 +23,7 @@ test("arrow keys turn it, plus and minus zoom, Home shows all", async () => {
     const views = [await seen()];
     for (const key of ["ArrowRight", "+", "Home"]) {
         await page.keyboard.press(key);
-        await page.waitForTimeout(200);
+        await page.waitForTimeout(800);
         views.push(await seen());
     }
     assert.equal(new Set(views).size, 3);

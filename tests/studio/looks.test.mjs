@@ -1,12 +1,15 @@
 // Narrow screens, dark, Chinese, keyboard alone, screen readers.
 
 import assert from "node:assert/strict";
+import fs from "node:fs";
 import { test } from "node:test";
-import { change, findings, quiet, serve, stateOf } from "./studio.mjs";
+import { ask, change, findings, quiet, serve, stateOf } from "./studio.mjs";
 
 const studio = await serve("vest.ron");
 const first = await studio.open();
 const TABS = ["Body and fabric", "Stages", "Text", "Accuracy and time", "Files"];
+
+const CARDS = JSON.parse(fs.readFileSync(new URL("../../studio/page/words/cards.zh.json", import.meta.url), "utf8"));
 
 /** How far the page is wider than its window. */
 const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
@@ -54,7 +57,17 @@ test("a Chinese browser is spoken to in Chinese, and the choice of a language is
     await page.getByRole("button", { name: "保存" }).waitFor();
     await page.getByRole("tab", { name: "人体与面料" }).waitFor();
     assert.equal(await page.evaluate(() => document.documentElement.lang), "zh-Hans");
+    await page.locator("#tab-stages").click();
+    await page.getByRole("button", { name: /^Canny/ }).click();
+    const card = page.locator("#stages");
+    const { stages } = await ask(page, "cards");
+    const canny = stages.find(({ name }) => name === "Canny");
+    for (const english of [canny.doc.split("\n")[0], canny.params[0].doc])
+        assert.equal(await card.getByText(english).count(), 0, english);
+    const doc = Object.entries(CARDS).find(([english]) => english === canny.params[0].doc)[1];
+    await card.getByText(doc).first().waitFor();
     await page.getByLabel("语言", { exact: true }).selectOption("en");
+    await card.getByText(canny.params[0].doc).first().waitFor();
     await page.getByRole("button", { name: "Save" }).waitFor();
     await page.reload();
     await page.getByRole("tab", { name: "Body and fabric" }).waitFor();

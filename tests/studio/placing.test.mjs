@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ask, change, quiet, serve, settled, stateOf, until } from "./studio.mjs";
+import { ask, change, drag, quiet, serve, settled, stateOf, until } from "./studio.mjs";
 
 const vest = await serve("vest.ron");
 const page = await vest.open();
@@ -154,7 +154,7 @@ test("a pocket is sewn onto a piece, and moved on it", async () => {
     await pane.getByLabel("Sew it onto").selectOption("front");
     const sewn = await change(other, () => pane.getByRole("button", { name: "Sew on", exact: true }).click());
     assert.match(sewn.text, /SewOn\(piece: "pocket", onto: "front", x: "0 mm", y: "0 mm"\)/);
-    const field = pane.getByLabel("to the right");
+    const field = pane.getByLabel("to the right in the drawing");
     const moved = await change(other, async () => {
         await field.fill("8");
         await field.press("Tab");
@@ -170,6 +170,21 @@ test("a pocket is sewn onto a piece, and moved on it", async () => {
     await field.fill("1e9");
     await field.press("Tab");
     assert.equal(await field.inputValue(), "8", "no pocket lies beside its piece");
+    const handle = pane.getByRole("button", { name: "pocket: drag it" });
+    const dragged = await change(other, async () => {
+        await handle.focus();
+        for (const key of ["ArrowLeft", "Shift+ArrowUp"]) await other.keyboard.press(key);
+    });
+    assert.match(dragged.text, /SewOn\(piece: "pocket", onto: "front", x: "75 mm", y: "50 mm"\)/);
+    const by = await change(other, () => drag(other, handle, -12, 0));
+    const x = Number(/SewOn\(piece: "pocket", onto: "front", x: "(.*?) mm", y: "50 mm"\)/.exec(by.text)[1]);
+    assert.ok(x < 70, `${x}`);
+    const off = await change(other, () => pane.getByRole("button", { name: "Take it off again" }).click());
+    assert.doesNotMatch(off.text, /SewOn/);
+    assert.match(off.text, /Remove\(piece: "collar"\)\]/);
+    await change(other, () => other.keyboard.press("Control+z"));
+    await until("the pocket on its piece", async () => /SewOn/.test((await stateOf(other)).text));
+
     const out = await change(other, () => pane.getByRole("button", { name: "Take it out" }).click());
     assert.match(out.text, /Remove\(piece: "collar"\), Remove\(piece: "pocket"\)/);
     assert.doesNotMatch(out.text, /SewOn/);

@@ -75,6 +75,7 @@ export async function serve(pipeline, { folder = folderOf(pipeline) } = {}) {
     return {
         folder,
         address,
+        pid: program.pid,
         open: (options) => open(options?.address ?? address, options),
         file: () => fs.readFileSync(path.join(folder, "pipeline.ron"), "utf8"),
         async end(signal) {
@@ -109,6 +110,13 @@ const launchFirefox = () =>
         firefoxUserPrefs: { "webgl.force-enabled": true },
     });
 
+/** Has the page's files come from a folder, not from the program. */
+const fromDisk = (page, folder) =>
+    page.route(
+        (url) => /\.(js|css|json)$/.test(url.pathname) && fs.existsSync(path.join(folder, url.pathname)),
+        (route) => route.fulfill({ path: path.join(folder, new URL(route.request().url()).pathname) }),
+    );
+
 /** Opens a page; `options` are those of Playwright's contexts. A garment is waited for, unless `wait` is false. */
 async function open(address, { wait = true, context = null, address: _, ...options } = {}) {
     if (!browser) {
@@ -127,6 +135,7 @@ async function open(address, { wait = true, context = null, address: _, ...optio
     const page = await own.newPage();
     page.setDefaultTimeout(20_000);
     const origin = new URL(address).origin;
+    if (process.env.PAGE) await fromDisk(page, process.env.PAGE);
     page.told = { errors: [], outside: [] };
     page.on(
         "console",
@@ -212,6 +221,15 @@ export async function change(page, act) {
     page.told.ranBefore = state.run.number;
     page.told.editedAt = Date.now();
     return state;
+}
+
+/** An edit that another page or program makes; a draft may have faults. */
+export async function send(page, changes, { words = "by another", draft = false } = {}) {
+    const { project } = await stateOf(page);
+    const url = new URL("/api/edit", page.url()).href;
+    const data = { edit: project.edit, words, changes, draft };
+    const answer = await page.request.post(url, { data, headers: { Origin: new URL(url).origin } });
+    assert.equal(answer.status(), 200, await answer.text());
 }
 
 /** The line that says what happened. */

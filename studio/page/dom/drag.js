@@ -8,6 +8,11 @@ import { afterPause } from "./element.js";
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 const PAUSE = 500;
 
+let held = null;
+
+/** Whether a handle is held by the pointer: what it belongs to is not drawn anew then. */
+export const isHeld = () => held?.isConnected ?? false;
+
 /**
  * `place(event)` gives the point of the drawing below the pointer. `move(dx, dy)` shows the handle moved by so much
  * altogether, `end(dx, dy)` takes it, `step` is what an arrow key moves (ten times with Shift). The handle stays where it
@@ -29,6 +34,7 @@ export function draggable(handle, { place, move, end, step, when = () => true })
         handle.focus({ preventScroll: true });
         handle.setPointerCapture(event.pointerId);
         from = place(event);
+        held = handle;
     });
     handle.addEventListener("pointermove", (event) => {
         if (!from) return;
@@ -38,11 +44,11 @@ export function draggable(handle, { place, move, end, step, when = () => true })
     });
     handle.addEventListener("pointerup", () => {
         if (!from) return;
-        from = null;
+        from = held = null;
         finish();
     });
     handle.addEventListener("pointercancel", () => {
-        from = null;
+        from = held = null;
         by = [0, 0];
         move(0, 0);
     });

@@ -14,11 +14,14 @@ import {
     PointsMaterial,
     SphereGeometry,
 } from "../vendor/three.module.min.js";
+import { store } from "../server/store.js";
 import { edgeLine } from "./edge_line.js";
 
 const OPEN = 0xe11d48;
 const LIT = 0xf59e0b;
 const BEFORE = 0x2563eb;
+/** So many threads of seams at most are shown between pieces that are placed. */
+const THREADS = 90;
 
 /** Nearer to the eye by a little, so that it is not lost in the cloth below it. */
 const above = { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 };
@@ -95,7 +98,10 @@ export function makeMarks(world, draw) {
         },
         before: (mesh, on) => put(before, mesh && geometryOf(mesh.positions, mesh.triangles), on),
         faults(mesh, on) {
-            const ends = (mesh?.open_seams ?? []).flatMap(([a, b]) => [a, b]);
+            // Between pieces that are not sewn yet, threads that are far from each other show which edges belong together.
+            const pairs = mesh?.open_seams ?? [];
+            const every = store.placing ? Math.ceil(pairs.length / THREADS) : 1;
+            const ends = pairs.filter((_, i) => i % every === 0).flat();
             const places = ends.flatMap((i) => [...mesh.positions.subarray(3 * i, 3 * i + 3)]);
             put(open, ends.length > 0 && geometryOf(Float32Array.from(places)), on);
             const corners = (mesh?.crossings ?? []).flatMap((i) => [

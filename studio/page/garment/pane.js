@@ -2,6 +2,7 @@
 // in the pattern and in the photo.
 
 import { h, oncePerFrame, replace } from "../dom/element.js";
+import { oldNotice } from "../head/old.js";
 import { mm, t } from "../words/words.js";
 import { store, tell, watch, whenChanged } from "../server/store.js";
 import { choose, hover, selection } from "../server/selection.js";
@@ -53,6 +54,7 @@ export function mountGarment(root) {
             ),
             h("span", { class: "push" }, views, closer, farther, fit),
         ),
+        oldNotice("garment"),
         h("div", { class: "stage" }, canvas, legend, none),
         below,
     );

@@ -62,7 +62,7 @@ export function placingButton() {
 export function mountPlaces(root) {
     const part = h("div", { class: "places", role: "group", label: "place" });
     root.prepend(part);
-    const draw = whenChanged((on, without, chosen, place) => {
+    const draw = whenChanged((on, hasStart, without, chosen, place) => {
         part.hidden = !on && without.length === 0;
         root.classList.toggle("placing", on);
         replace(
@@ -84,14 +84,14 @@ export function mountPlaces(root) {
                     }),
                 ),
             ),
-            place ? form(chosen, place) : on && h("p", { class: "hint", word: "place.how" }),
+            place ? form(chosen, place) : on && h("p", { class: "hint", word: hasStart ? "place.how" : "place.noStart" }),
         );
     });
     watch(["state", "view", "garment", "chosen"], () => {
         const on = store.placing;
         const chosen = selection.chosen.piece ?? null;
         const without = unplaced();
-        draw(on, without, chosen, on && chosen && !without.includes(chosen) ? placeOf(chosen) : null);
+        draw(on, Boolean(store.view?.start), without, chosen, on && chosen && !without.includes(chosen) ? placeOf(chosen) : null);
     });
 }
 
@@ -117,13 +117,12 @@ function form(piece, place) {
                 h(
                     "button",
                     {
-                        class: "icon",
-                        label: `place.${name}`,
-                        tip: `place.${name}`,
                         "data-key": `turn-${name}`,
                         onclick: () => change((now) => turned(now, axis, degrees)),
                     },
-                    sign,
+                    h("span", { "aria-hidden": "true" }, sign),
+                    " ",
+                    h("span", { word: `place.${name}` }),
                 ),
             ),
         ),

@@ -12,17 +12,33 @@ import {
     Vector3,
     WebGLRenderer,
 } from "../vendor/three.module.min.js";
-import { oncePerFrame } from "../dom/element.js";
+import { afterPause, oncePerFrame } from "../dom/element.js";
 import { colour } from "../head/theme.js";
 import { watch } from "../server/store.js";
 
 /** More pixels than this to one of the page are not seen, but cost. */
 const MOST_PIXELS = 2;
 
+/** How long after its last change a picture is drawn anew in more pixels, where no graphics card draws, ms. */
+const REST = 200;
+
+/** Whether the processor draws, not a graphics card. */
+function isSoftware() {
+    const gl = document.createElement("canvas").getContext("webgl2");
+    if (!gl) return false;
+    const named = gl.getExtension("WEBGL_debug_renderer_info");
+    const name = gl.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+    gl.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
 /** Throws where the browser has no WebGL. */
 export function makeScene(canvas) {
-    const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
-    renderer.setPixelRatio(Math.min(devicePixelRatio, MOST_PIXELS));
+    // Smooth edges take a processor more than half of its time: it draws them only once the picture rests.
+    const isSlow = isSoftware();
+    const renderer = new WebGLRenderer({ canvas, antialias: !isSlow, powerPreference: "low-power" });
+    const quick = Math.min(devicePixelRatio, isSlow ? 1 : MOST_PIXELS);
+    renderer.setPixelRatio(quick);
     const scene = new Scene();
     const camera = new PerspectiveCamera(28, 1, 0.01, 50);
     const key = new DirectionalLight(0xffffff, 2.2);
@@ -34,10 +50,16 @@ export function makeScene(canvas) {
     const section = new Plane(new Vector3(0, 0, -1), 0);
     let pictures = 0;
 
-    const draw = oncePerFrame(() => {
+    const render = (pixels) => {
+        if (renderer.getPixelRatio() !== pixels) renderer.setPixelRatio(pixels);
         renderer.render(scene, camera);
         pictures += 1;
         canvas.dataset.pictures = pictures;
+    };
+    const atRest = afterPause(REST, () => render(MOST_PIXELS));
+    const draw = oncePerFrame(() => {
+        render(quick);
+        if (isSlow) atRest();
     });
     new ResizeObserver(() => {
         const { width, height } = canvas.parentElement.getBoundingClientRect();

@@ -25,11 +25,14 @@ export function sayError(error) {
 
 const seconds = (value) => t("seconds", { s: value < 10 ? value.toFixed(1) : value.toFixed(0) });
 
+/** A message with what it offers to be typed at the command line; the page has buttons for that (remedies.js). */
+const plain = (text) => text.replace(/--set '([^']*)'/g, "$1");
+
 /** What a run came to, in one sentence. */
 function told(run, words) {
     if (run.state === "failed") {
         const { stage, message, hint } = run.error ?? { message: t("run.failed") };
-        return say(`${stage ? `${stage}: ` : ""}${message}${hint ? ` (${hint})` : ""}`, "error");
+        return say(plain(`${stage ? `${stage}: ` : ""}${message}${hint ? ` (${hint})` : ""}`), "error");
     }
     if (run.state === "stopped") return sayWord("run.stopped", {}, "note");
     if (run.state !== "done") return undefined;
@@ -42,7 +45,7 @@ function told(run, words) {
             : t("run.moved", { mm: mm(moved / 1000, moved < 10 ? 1 : 0), took });
     if (run.kind === "draft") return say(what + did + t("run.asDraft"), "done");
     const missed = (run.shortfalls ?? []).map(({ message }) => message);
-    return missed.length === 0 ? say(what + did, "done") : say(what + missed.join("; "), "error");
+    return missed.length === 0 ? say(what + did, "done") : say(plain(what + missed.join("; ")), "error");
 }
 
 const tellRun = whenChanged((run, words, proposed) => {
@@ -56,7 +59,7 @@ const forget = whenChanged(() => say(""));
 /** What keeps a text from being run. What someone types has its faults below it. */
 const tellFault = whenChanged((edit, fault) => {
     if (!fault || document.activeElement?.matches("textarea")) return;
-    say(fault.hint ? `${fault.message} (${fault.hint})` : fault.message, "error");
+    say(plain(fault.hint ? `${fault.message} (${fault.hint})` : fault.message), "error");
 });
 
 /** `foot` holds the line, `lost` is the banner. */

@@ -4,6 +4,7 @@
 import { svg } from "../dom/element.js";
 import { cm, t } from "../words/words.js";
 import { edgePoints } from "../garment/edge_line.js";
+import { pocketOf } from "./sew_on.js";
 
 /** Colours of seams, one after the other; the style sheet has as many. */
 const COLOURS = 10;
@@ -89,6 +90,29 @@ function cornerElement(piece, k, at, reach) {
     );
 }
 
+/** A line that is drawn on a piece. That of a pocket can be moved. */
+function markElement(line, at) {
+    const pocket = pocketOf(line);
+    const label = pocket ? t("sewOn.drag", { piece: pocket }) : line.name;
+    const handle = pocket && {
+        role: "button",
+        tabindex: 0,
+        "aria-label": label,
+        "data-piece": pocket,
+        "data-pocket": pocket,
+        "data-key": `pocket-${pocket}`,
+    };
+    return svg(
+        "path",
+        {
+            class: `mark ${line.purpose}${pocket ? " can-move" : ""}`,
+            d: path(line.points.map(at.to)),
+            ...handle,
+        },
+        svg("title", {}, label),
+    );
+}
+
 /** A piece with all that is drawn on it. `reach` says whether the Tab key goes into it. */
 export function pieceElement(piece, at, seams, reach) {
     const outline = path(piece.points.map(at.to), true);
@@ -105,13 +129,7 @@ export function pieceElement(piece, at, seams, reach) {
             "data-key": `piece-${piece.name}`,
             "data-piece": piece.name,
         }),
-        (piece.lines ?? []).map((line) =>
-            svg(
-                "path",
-                { class: `mark ${line.purpose}`, d: path(line.points.map(at.to)) },
-                svg("title", {}, line.name),
-            ),
-        ),
+        (piece.lines ?? []).map((line) => markElement(line, at)),
         piece.grain && svg("path", { class: "grain", d: path(piece.grain.map(at.to)) }),
         svg("text", { class: "name", x: at.middle[0], y: at.middle[1], "aria-hidden": "true" }, piece.name),
         piece.edges.map((edge) =>

@@ -3,7 +3,8 @@
 
 import { h, replace, svg } from "../dom/element.js";
 import { zoomable } from "../dom/zoom.js";
-import { draggable } from "../dom/drag.js";
+import { draggable, isHeld } from "../dom/drag.js";
+import { oldNotice } from "../head/old.js";
 import { t } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { store, watch, whenChanged } from "../server/store.js";
@@ -16,6 +17,7 @@ import { arrange } from "./plane.js";
 import { mountInspector } from "./inspector.js";
 import { mountPrinting } from "./printing.js";
 import { proposals } from "./proposals.js";
+import { dragsPocket } from "./sew_on.js";
 import { sewing } from "./sewing.js";
 
 /** What an arrow key moves, in millimetres. */
@@ -71,6 +73,7 @@ export function mountPattern(root) {
             mountPrinting(),
             h("span", { class: "push" }, zoom.buttons),
         ),
+        oldNotice("pattern"),
         h("div", { class: "stage" }, drawing, none),
         inspector,
     );
@@ -116,6 +119,7 @@ export function mountPattern(root) {
             ),
         );
         for (const piece of pattern.pieces) handles(piece);
+        pockets();
         zoom.fit(plane.box);
         sizes();
         light();
@@ -158,18 +162,27 @@ export function mountPattern(root) {
         }
     }
 
+    // The line of a pocket lies on another piece than the one that moves.
+    function pockets() {
+        for (const line of pieces.querySelectorAll("[data-pocket]"))
+            dragsPocket(line, { place: zoom.place, step: STEP });
+    }
+
     async function take(words, alteration) {
         await edit(words, () => alter(alteration));
         guide.setAttribute("d", "");
     }
 
     const redraw = () => {
+        if (isHeld()) return;
         const pattern = store.view?.pattern;
         none.hidden = Boolean(pattern);
         drawing.classList.toggle("gone", !pattern);
         if (pattern) draw(pattern, selection.chosen.piece, proposals());
     };
     watch(["view", "chosen", "state"], redraw);
+    // What came while a handle was held.
+    for (const end of ["pointerup", "pointercancel"]) drawing.addEventListener(end, redraw);
 
     function light() {
         const edges = new Set(litEdges().map(({ piece, edge }) => `${piece}.${edge}`));

@@ -1,5 +1,6 @@
 // A piece that is sewn onto another, as a pocket, and how far its middle lies from the middle of that one.
 
+import { draggable } from "../dom/drag.js";
 import { h } from "../dom/element.js";
 import { numberField } from "../dom/number_field.js";
 import { t } from "../words/words.js";
@@ -19,32 +20,63 @@ function sewnOn(piece) {
     return { items, at, onto: fields.onto.value, way: [metres(fields.x.value), metres(fields.y.value)] };
 }
 
-/** The changes that move a piece on the one that it is sewn onto; none where it is sewn on no longer. */
-function moved(piece, k, to) {
+/** The changes after which a piece lies so far from the middle of the other; none where it is sewn on no longer. */
+function moved(piece, to) {
     const now = sewnOn(piece);
-    return now && withItems(now.items.with(now.at, sewOn(piece, now.onto, ...now.way.with(k, to))));
+    return now && withItems(now.items.with(now.at, sewOn(piece, now.onto, ...to(now.way))));
 }
 
-/** How far to a side the middle of a pocket may lie from that of its piece, in centimetres: no farther than its edges. */
-function limits(onto, k) {
+/** The changes after which a piece is sewn onto no other. */
+function takenOff(piece) {
+    const now = sewnOn(piece);
+    return now && withItems(now.items.toSpliced(now.at, 1));
+}
+
+/** How far to a side the middle of a pocket may lie from that of its piece, in metres: no farther than its edges. */
+function farthest(onto, k) {
     const points = store.view.pattern.pieces.find(({ name }) => name === onto)?.points;
-    if (!points) return {};
+    if (!points) return Infinity;
     const all = points.map((point) => point[k]);
-    const most = 50 * (Math.max(...all) - Math.min(...all));
-    return { min: -most, max: most };
+    return (Math.max(...all) - Math.min(...all)) / 2;
+}
+
+/** The piece that is sewn on along a line of another piece; nothing for other lines. */
+export function pocketOf(line) {
+    const piece = /^(.+)_place$/.exec(line.name)?.[1];
+    return piece && sewnOn(piece) ? piece : null;
+}
+
+/** Lets a piece be dragged on the one that it is sewn onto, by the line that is drawn there. */
+export function dragsPocket(line, { place, step }) {
+    const piece = line.dataset.pocket;
+    draggable(line, {
+        place,
+        step,
+        move: (dx, dy) => line.setAttribute("transform", `translate(${dx} ${dy})`),
+        end: (dx, dy) => {
+            const { onto } = sewnOn(piece);
+            const within = (x, k) => Math.max(-farthest(onto, k), Math.min(farthest(onto, k), x));
+            const by = [dx / 1000, -dy / 1000];
+            edit(t("edit.sewOn", { piece, onto }), () => moved(piece, (way) => way.map((x, k) => within(x + by[k], k))));
+        },
+    });
 }
 
 /** What can be done with a piece that is sewn on, or that may be. */
 export function sewOnPart({ name: piece }) {
     const now = sewnOn(piece);
     if (now) {
+        const most = (k) => 100 * farthest(now.onto, k);
         const field = (word, k) =>
             numberField(
                 word,
                 Number((100 * now.way[k]).toFixed(1)),
                 "cm",
-                { step: "any", ...limits(now.onto, k), "data-key": word },
-                (next) => edit(t("edit.sewOn", { piece, onto: now.onto }), () => moved(piece, k, next / 100)),
+                { step: "any", min: -most(k), max: most(k), "data-key": word },
+                (next) =>
+                    edit(t("edit.sewOn", { piece, onto: now.onto }), () =>
+                        moved(piece, (way) => way.with(k, next / 100)),
+                    ),
             );
         return h(
             "p",
@@ -53,6 +85,10 @@ export function sewOnPart({ name: piece }) {
             " ",
             field("sewOn.right", 0),
             field("sewOn.above", 1),
+            h("button", {
+                word: "sewOn.off",
+                onclick: () => edit(t("edit.sewOnOff", { piece, onto: now.onto }), () => takenOff(piece)),
+            }),
         );
     }
     const others = store.view.pattern.pieces.map(({ name }) => name).filter((name) => name !== piece);

@@ -1,5 +1,5 @@
 // Landmarks of the garment on its photo. One that is dragged is given to the stage that cuts the pattern, as shares of
-// the photo's width and height; a double click or Delete gives it back to the stage.
+// the photo's width and height, and to the one that measures its wearer; a double click or Delete gives it back.
 
 import { replace, svg } from "../dom/element.js";
 import { draggable } from "../dom/drag.js";
@@ -9,11 +9,11 @@ import { stagesOf, store } from "../server/store.js";
 import { map, pair, tryRead } from "../ron/ron.js";
 import { entryOf } from "./shown.js";
 
-/** The stage that takes landmarks, where the pipeline has one. */
-export const cutter = () =>
-    stagesOf("style").find((stage) =>
-        store.cards.get(stage.name)?.params.some((param) => param.name === "landmarks"),
-    );
+const takesLandmarks = (stage) =>
+    store.cards.get(stage.name)?.params.some((param) => param.name === "landmarks");
+
+/** The stage that cuts the pattern by landmarks, where the pipeline has one. */
+export const cutter = () => stagesOf("style").find(takesLandmarks);
 
 const nice = (name) => name.replaceAll("_", " ");
 
@@ -29,9 +29,11 @@ function changes(name, share) {
     const all = given(stage);
     if (share) all.set(name, share);
     else all.delete(name);
-    const path = `${stage.path}.landmarks`;
-    if (all.size === 0) return [{ remove: path }];
-    return [{ set: { path, value: map([...all].map(([key, [x, y]]) => [key, pair(x, y)])) } }];
+    const value = map([...all].map(([key, [x, y]]) => [key, pair(x, y)]));
+    return [stage, ...stagesOf("body").filter(takesLandmarks)]
+        .filter((of) => all.size > 0 || given(of).size > 0)
+        .map((of) => `${of.path}.landmarks`)
+        .map((path) => (all.size === 0 ? { remove: path } : { set: { path, value } }));
 }
 
 /** A photo that is another one's mirror image has no landmarks of its own. */

@@ -61,7 +61,7 @@ words.watch(() => tell(...watchers.keys()));
 export function whenChanged(run) {
     let last = null;
     return (...shown) => {
-        const now = JSON.stringify([words.language, ...shown]);
+        const now = JSON.stringify([words.edition, ...shown]);
         if (now === last) return;
         last = now;
         run(...shown);

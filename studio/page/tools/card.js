@@ -1,6 +1,7 @@
 // A stage's card: what it does, its parameters, what may stand in its place.
 
 import { h } from "../dom/element.js";
+import { cardText, summary } from "../words/card_texts.js";
 import { t, term } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { sameRole, store } from "../server/store.js";
@@ -15,7 +16,7 @@ function swap(stage) {
         "select",
         { id: "swap", label: "card.swap", "data-key": "swap" },
         h("option", { value: "" }, t("card.swapFor")),
-        others.map((card) => h("option", { value: card.name, title: card.doc.split("\n")[0] }, card.name)),
+        others.map((card) => h("option", { value: card.name, title: summary(card) }, card.name)),
     );
     choice.addEventListener(
         "change",
@@ -56,7 +57,8 @@ function told(stage) {
 export function cardOf(stage) {
     const card = store.cards.get(stage.name);
     const inList = stage.path?.startsWith("stages.");
-    const [first, ...rest] = (card?.doc ?? "").split("\n\n");
+    const { text: doc, lang } = cardText(card?.doc ?? "");
+    const [first, ...rest] = doc.split("\n\n");
     return [
         h(
             "h3",
@@ -64,14 +66,14 @@ export function cardOf(stage) {
             stage.id === stage.name ? stage.name : `${stage.name} “${stage.id}”`,
             h("small", {}, ` ${term("role", stage.role)}`),
         ),
-        h("p", { lang: "en" }, first),
+        h("p", { lang }, first),
         rest.length > 0 &&
             h(
                 "details",
                 {},
                 h("summary", { word: "card.more" }),
-                rest.map((text) => h("p", { lang: "en" }, text)),
-                card.source && h("p", { class: "hint" }, card.source),
+                rest.map((text) => h("p", { lang }, text)),
+                card.source && h("p", { class: "hint" }, cardText(card.source).text),
             ),
         h(
             "p",

@@ -2,6 +2,7 @@
 // has the default beside it and can be given back to it.
 
 import { h } from "../dom/element.js";
+import { cardText } from "../words/card_texts.js";
 import { t } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { upload } from "../server/requests.js";
@@ -78,7 +79,7 @@ function numberField(param, value, props, take) {
     return slider({
         ...props,
         value: Number.isNaN(given) ? "" : given,
-        unit: param.unit,
+        unit: cardText(param.unit).text,
         min,
         max,
         step: whole
@@ -216,6 +217,7 @@ export function parameter(stage, card, param) {
             },
             "↺",
         );
+    const { text: doc, lang } = cardText(param.doc);
     return h(
         "div",
         { class: `param ${value === undefined ? "" : "given"}` },
@@ -224,8 +226,8 @@ export function parameter(stage, card, param) {
         reset,
         h(
             "p",
-            { class: "hint", lang: "en" },
-            param.doc,
+            { class: "hint", lang },
+            doc,
             " ",
             h(
                 "span",

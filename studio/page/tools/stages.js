@@ -1,6 +1,7 @@
 // The pipeline's stages, as a list and as a graph; the card of the one that is chosen.
 
 import { h, replace } from "../dom/element.js";
+import { summary } from "../words/card_texts.js";
 import { t, term } from "../words/words.js";
 import { edit } from "../server/edits.js";
 import { sameRole, store, watch, whenChanged } from "../server/store.js";
@@ -50,7 +51,7 @@ function adder() {
     const choice = h(
         "select",
         { id: "writer", label: "stages.writer", "data-key": "writer" },
-        writers.map((card) => h("option", { value: card.name, title: card.doc.split("\n")[0] }, card.name)),
+        writers.map((card) => h("option", { value: card.name, title: summary(card) }, card.name)),
     );
     return h(
         "p",

@@ -13,6 +13,8 @@ export const en = {
 
     "run.after": "{words}: ", "run.done": "Done in {took}.", "run.moved": "The garment moved by at most {mm}, in {took}.",
     "run.asDraft": " (draft)", "run.failed": "The run failed.", "run.stopped": "Stopped.",
+    "old.failed": "{stage} failed: what is shown here is from before it.", "old.stopped": "The run was stopped: what is shown here is from before it.", "old.faults": "The text has faults: what is shown here is from before them.", "old.undo": "Undo: {words}", "old.writing": "Writing",
+    "remedies": "What may help", "remedy.set": "Set {said}", "remedy.kind": "Choose the kind", "remedy.width": "Give the width",
     "figures.triangles": "{n} triangles", "figures.gap": "widest seam gap {mm}", "figures.strain": "strain {share} %",
     "connection.lost": "The connection to the program is lost. Nothing is lost with it: the page comes back by itself when toile studio runs again.",
 
@@ -54,7 +56,7 @@ export const en = {
     "corner.label": "Corner {k} of {piece} at {x}, {y}", "corner.how": "Drag it, or move it by arrow keys: 5 mm, with Shift 50 mm.",
     "edge.sewn": "sewn to {to}", "edge.proposed": "proposed to be sewn to {to}", "edge.open": "not sewn", "edge.length": "Length", "edge.moveHow": "Drag the edge, or move it by arrow keys: 5 mm, with Shift 50 mm.",
     "dart": "Add a dart", "dart.at": "Place along the edge", "dart.width": "Width", "dart.length": "Length", "dart.add": "Add the dart",
-    "sewOn.onto": "Sew it onto", "sewOn.do": "Sew on", "sewOn.now": "Sewn onto {onto}, its upper edge open. From its middle:", "sewOn.right": "to the right", "sewOn.above": "up", 
+    "sewOn.onto": "Sew it onto", "sewOn.do": "Sew on", "sewOn.now": "Sewn onto {onto}, its upper edge open. From its middle:", "sewOn.right": "to the right in the drawing", "sewOn.above": "up", "sewOn.off": "Take it off again", "sewOn.drag": "{piece}: drag it, or move it by arrow keys",
     "piece.remove": "Take it out", "mirror.name": "Name of the mirror image", "mirror.do": "Mirror",
     "sew": "Sew", "sew.tip": "Click two edges to sew them together", "sew.first": "Click the first edge.", "sew.second": "{edge}: now click the edge that it is sewn to. Escape ends.",
     "seam.what": "Seam {seam} ({kind}).", "seam.gap": "Widest gap {mm}.", "seam.unpick": "Unpick the seam", "seam.reverse": "Turn the seam round",
@@ -67,7 +69,7 @@ export const en = {
     "garment.tools": "Tools of the garment", "garment.none": "The garment comes when it is sewn.", "garment.role": "3D view",
     "garment.label": "The garment: {panels} panels, {triangles} triangles. Arrow keys turn it, plus and minus zoom, Home shows all.",
     "garment.noWebGl": "This browser shows no 3D (WebGL is missing). Everything else works.",
-    "place": "Place pieces", "place.tip": "Show the pieces as they start, and drag them", "place.how": "Drag a piece to where it starts; beside the pieces a drag turns the view. Seen from the side, a piece moves to the body and away from it.",
+    "place": "Place pieces", "place.tip": "Show the pieces as they start, and drag them", "place.how": "Drag a piece to where it starts; beside the pieces a drag turns the view. Seen from the side, a piece moves to the body and away from it. By keyboard: choose a piece of the pattern, and give its place in figures.", "place.noStart": "The pieces come here when each of them has a place.",
     "place.none": "Nothing says where {piece} stands.", "place.before": "Put it before the body", "place.x": "Wearer's left", "place.y": "Up", "place.z": "Forwards",
     "place.turns": "Turns of the piece", "place.left": "Turn left", "place.right": "Turn right", "place.forwards": "Tilt forwards", "place.backwards": "Tilt backwards", "place.clockwise": "Clockwise", "place.counter": "Counterclockwise", "place.over": "Turn round",
     "place.back": "Back to its own place",
@@ -99,7 +101,7 @@ export const en = {
     "edit.landmark": "move {name}", "edit.landmarkBack": "give back {name}", "edit.stroke.garment": "mark garment", "edit.stroke.ground": "mark ground",
     "edit.strokesClear": "clear marks", "edit.photo": "{name} is {file}", "edit.width": "width {width}", "edit.scale": "scale by {object}", "edit.kind": "kind {kind}",
     "edit.place": "place {piece}", "edit.placeBack": "give {piece} its own place back", "edit.corner": "move corner {k} of {piece}", "edit.edge": "move {edge}", "edit.length": "{edge} {length} long", "edit.dart": "dart in {edge}",
-    "edit.sewOn": "sew {piece} onto {onto}", "edit.removePiece": "take {piece} out", "edit.mirror": "mirror {piece}", "edit.sew": "sew {a} to {b}", "edit.proposals": "sew {n} proposed seams", "edit.unpick": "unpick {seam}", "edit.reverse": "turn {seam} round",
+    "edit.sewOn": "sew {piece} onto {onto}", "edit.sewOnOff": "take {piece} off {onto}", "edit.removePiece": "take {piece} out", "edit.mirror": "mirror {piece}", "edit.sew": "sew {a} to {b}", "edit.proposals": "sew {n} proposed seams", "edit.unpick": "unpick {seam}", "edit.reverse": "turn {seam} round",
     "edit.measure": "{name} {value}", "edit.size": "size {size}", "edit.fabric": "fabric {name}", "edit.set": "{path} {value}",
     "edit.reset": "default of {path}", "edit.swap": "{from} becomes {to}", "edit.remove": "remove {stage}", "edit.add": "add {stage}", "edit.text": "edit the text",
 };

@@ -7,6 +7,7 @@ import { zh } from "./zh.js";
 const TABLES = { en, zh };
 const KEPT = "toile-language";
 let language = "en";
+let edition = 0;
 const watchers = new Set();
 
 const fill = (text, values) => text.replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
@@ -39,6 +40,15 @@ export const words = {
         localStorage.setItem(KEPT, language);
         document.documentElement.lang = language === "zh" ? "zh-Hans" : language;
         retell();
+        this.renew();
+    },
+    /** Grows with every change of the words. */
+    get edition() {
+        return edition;
+    },
+    /** Tells that there are other words than before. */
+    renew() {
+        edition += 1;
         watchers.forEach((run) => run());
     },
     /** The language chosen last, else the first that the browser asks for and that there is. */

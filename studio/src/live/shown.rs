@@ -37,9 +37,15 @@ pub(crate) struct ShownArtifacts {
     pub(crate) read: Option<Arc<ReadPattern>>,
     /// As the last stage left it.
     pub(crate) pattern: Option<Arc<Pattern>>,
+    /// The number of the text that it comes from.
+    pub(crate) pattern_edit: u64,
     /// Its pieces around the body, before they are sewn.
     pub(crate) start: Option<Arc<Garment>>,
+    /// The number of the text that they come from.
+    pub(crate) start_edit: u64,
     pub(crate) garment: Option<Arc<Garment>>,
+    /// The number of the text that it comes from.
+    pub(crate) garment_edit: u64,
     /// The garment's textures; none before it has any.
     pub(crate) model: Option<Arc<Model>>,
     pub(crate) body: Option<Arc<Body>>,
@@ -49,12 +55,12 @@ pub(crate) struct ShownArtifacts {
 }
 
 impl ShownArtifacts {
-    /// Takes what a stage made; whether that is shown.
-    pub(crate) fn take(&mut self, outputs: &[PortValue]) -> bool {
-        outputs.iter().filter(|value| self.take_port(value)).count() > 0
+    /// Takes what a stage made of the text of that number; whether it is shown.
+    pub(crate) fn take(&mut self, outputs: &[PortValue], edit: u64) -> bool {
+        outputs.iter().filter(|value| self.take_port(value, edit)).count() > 0
     }
 
-    fn take_port(&mut self, value: &PortValue) -> bool {
+    fn take_port(&mut self, value: &PortValue, edit: u64) -> bool {
         let kind = value.kind();
         // Photos that stages change are not those that a user took.
         if kind == Photo::KIND && self.photos.is_empty() {
@@ -67,14 +73,17 @@ impl ShownArtifacts {
             self.plan = one(value);
         } else if kind == Pattern::KIND {
             self.pattern = one(value);
+            self.pattern_edit = edit;
             if self.read.is_none() {
                 self.read = self.pattern.clone().map(|pattern| Arc::new(ReadPattern::new(pattern)));
             }
         } else if kind == Garment::KIND {
             self.garment = one(value);
+            self.garment_edit = edit;
             self.model = None;
             if self.start.is_none() {
                 self.start = self.garment.clone();
+                self.start_edit = edit;
             }
         } else if kind == Model::KIND {
             self.model = one(value);
@@ -95,9 +104,17 @@ impl ShownArtifacts {
         fn either<T>(new: &NamedSet<T>, old: &NamedSet<T>) -> NamedSet<T> {
             if new.is_empty() { old.clone() } else { new.clone() }
         }
-        let (garment, model) = match &self.garment {
-            None => (before.garment.clone(), before.model.clone()),
-            new => (new.clone(), self.model.clone()),
+        let (garment, garment_edit, model) = match &self.garment {
+            None => (before.garment.clone(), before.garment_edit, before.model.clone()),
+            new => (new.clone(), self.garment_edit, self.model.clone()),
+        };
+        let (pattern, pattern_edit) = match &self.pattern {
+            None => (before.pattern.clone(), before.pattern_edit),
+            new => (new.clone(), self.pattern_edit),
+        };
+        let (start, start_edit) = match &self.start {
+            None => (before.start.clone(), before.start_edit),
+            new => (new.clone(), self.start_edit),
         };
         ShownArtifacts {
             photos: either(&self.photos, &before.photos),
@@ -105,9 +122,12 @@ impl ShownArtifacts {
             outlines: either(&self.outlines, &before.outlines),
             plan: self.plan.clone().or_else(|| before.plan.clone()),
             read: self.read.clone().or_else(|| before.read.clone()),
-            pattern: self.pattern.clone().or_else(|| before.pattern.clone()),
-            start: self.start.clone().or_else(|| before.start.clone()),
+            pattern,
+            pattern_edit,
+            start,
+            start_edit,
             garment,
+            garment_edit,
             model,
             body: self.body.clone().or_else(|| before.body.clone()),
             collider: self.collider.clone().or_else(|| before.collider.clone()),

@@ -161,7 +161,7 @@ impl LiveState {
     /// Takes note of a stage that is done.
     pub(super) fn take(&mut self, stage: &WatchedStage<'_>) {
         self.moving = None;
-        if self.fresh.take(&stage.outputs) {
+        if self.fresh.take(&stage.outputs, self.run.edit) {
             self.view += 1;
         }
         let figure = |m: &toile_core::artifact::Measure| StageFigure {

@@ -4,7 +4,7 @@
 //! After a change of a stage's card:
 //! `UPDATE_DOCS=1 cargo test --release -p toile-tests --test whole catalogue::`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use toile_core::{Card, Role};
 use toile_tests::root;
 
@@ -106,6 +106,41 @@ fn the_catalogue_is_up_to_date() {
 #[test]
 fn the_schema_of_pipeline_files_is_up_to_date() {
     committed("docs/reference/pipeline.schema.json", &["stages", "--schema"]);
+}
+
+#[test]
+fn the_studio_has_every_card_in_chinese() {
+    let path = root().join("studio/page/words/cards.zh.json");
+    let chinese: BTreeMap<String, String> =
+        serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let registry = toile::registry();
+    let of = |card: &Card| {
+        let params = card.params.iter().map(|p| p.doc.to_owned());
+        params.chain([card.doc.to_owned()]).collect::<Vec<_>>()
+    };
+    let texts: BTreeSet<String> = registry.cards().flat_map(of).collect();
+    // Sources and units have Chinese words where they are words.
+    let others = registry.cards().flat_map(|card| {
+        let units = card.params.iter().map(|p| p.unit.to_owned());
+        units.chain([card.source.to_owned()]).collect::<Vec<_>>()
+    });
+    let known: BTreeSet<String> = others.chain(texts.iter().cloned()).collect();
+    let missing: Vec<&String> = texts.iter().filter(|text| !chinese.contains_key(*text)).collect();
+    let old: Vec<&String> = chinese.keys().filter(|text| !known.contains(*text)).collect();
+    assert!(
+        missing.is_empty() && old.is_empty(),
+        "studio/page/words/cards.zh.json lacks {missing:#?}, and has what no card says: {old:#?}"
+    );
+    let is_chinese = |text: &str| text.chars().any(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
+    let ticked = |text: &str| {
+        let mut names: Vec<String> = text.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+        names.sort();
+        names
+    };
+    for (english, other) in &chinese {
+        assert!(is_chinese(other), "{english}");
+        assert_eq!(ticked(english), ticked(other), "{english}");
+    }
 }
 
 /// The committed schema as a validator reads it.
