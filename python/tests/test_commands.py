@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
+import signal
 import subprocess
 import sys
+import urllib.request
 from pathlib import Path
 
 import pytest
@@ -48,6 +51,25 @@ def test_stages_of_a_file_of_python_are_known_to_the_command(tmp_path: Path) -> 
     assert "valid" in checked.stdout
     gone = command("--plugin", "none.py", "stages")
     assert gone.returncode == 3 and gone.stderr.endswith('none.py"\n')
+
+
+def test_the_studio_is_in_the_wheel(tmp_path: Path) -> None:
+    program = [sys.executable, "-m", "toile", "studio", "--no-open", str(tmp_path)]
+    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as studio:
+        try:
+            assert studio.stdout is not None
+            found = next(m for line in studio.stdout if (m := re.search(r"(http://127\.0\.0\.1:\d+)/\?token=\w+", line)))
+            browser = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
+            page = browser.open(found[0]).read().decode()
+            script = re.search(r'src="/?([\w./]+\.js)"', page)
+            assert script and browser.open(f"{found[1]}/{script[1]}").status == 200
+            state = json.load(browser.open(f"{found[1]}/api/state"))
+            assert state["project"]["file"] is None
+            cards = json.load(browser.open(f"{found[1]}/api/cards"))["stages"]
+            assert any(card["name"] == "StaticEquilibrium" for card in cards)
+        finally:
+            studio.send_signal(signal.SIGINT)
+        assert studio.wait(timeout=30) in (0, 5)
 
 
 def test_a_garment_is_verified(shirt: toile.Run, tmp_path: Path) -> None:

@@ -180,7 +180,8 @@ fn the_wearer_is_measured_between_the_landmarks_that_are_said() {
         fitting.run(front, Some(photos), &cx).unwrap();
         cx.take_remarks().notes.concat()
     };
-    let long = |told: &str| told.split(", ").find_map(|part| part.strip_suffix(" cm long fits it")?.parse().ok());
+    let long =
+        |told: &str| told.split(", ").find_map(|part| part.strip_suffix(" cm long fits it")?.parse().ok());
     let [found, said]: [Option<f64>; 2] = [told(BTreeMap::new()), told(lower.into())].map(|t| long(&t));
     assert_eq!([found, said], [Some(68.0), Some(65.0)]);
 }
