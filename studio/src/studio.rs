@@ -12,15 +12,16 @@ use crate::project::{StudioProject, upload, written, written_file};
 use crate::pulse::Pulse;
 use crate::show::measures::measures;
 use crate::show::trade::trade;
-use crate::show::view::view;
+use crate::show::view::{FRONT, ViewText, view};
 use crate::show::{mesh, pictures};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use toile_core::Registry;
-use toile_core::artifact::{Garment, Model};
+use toile_core::artifact::{Garment, Model, Photo};
 use toile_core::param::ron_text;
 use toile_pattern::pattern::seams_file;
+use toile_pattern::style::seen_styles;
 use toile_pipeline::cache::Cache;
 
 /// What a studio is opened with.
@@ -53,8 +54,13 @@ pub struct Studio {
     quality: Mutex<Option<String>>,
     /// The last garment that was packed.
     packed: Mutex<Option<PackedGarment>>,
+    /// The last photo that a network has looked at, and what it saw.
+    guessed: Mutex<Option<GuessedPhoto>>,
     pulse: Pulse,
 }
+
+/// A photo and the kinds that it may show, with their probabilities.
+type GuessedPhoto = (Arc<Photo>, Vec<(&'static str, f64)>);
 
 /// A garment as a file, and what it was made of.
 #[derive(Debug)]
@@ -86,6 +92,7 @@ impl Studio {
             runs,
             quality: Mutex::default(),
             packed: Mutex::default(),
+            guessed: Mutex::default(),
             pulse,
         };
         studio.follow(&held(&studio.project));
@@ -252,7 +259,25 @@ impl Studio {
             let live = self.live.state();
             (live.view, live.shown())
         };
-        view(number, &shown, &checked.landmarks(), checked.seams_to_give().is_some())
+        let guesses = if checked.cuts_photos() { self.guesses(&shown) } else { Vec::new() };
+        let text =
+            ViewText { given: checked.landmarks(), proposes: checked.seams_to_give().is_some(), guesses };
+        view(number, &shown, &text)
+    }
+
+    /// The kinds that a network sees in the photo of the front.
+    fn guesses(&self, shown: &ShownArtifacts) -> Vec<(&'static str, f64)> {
+        let Some(photo) = shown.photos.get(FRONT) else { return Vec::new() };
+        let mut kept = held(&self.guessed);
+        match kept.as_ref().filter(|(of, _)| Arc::ptr_eq(of, photo)) {
+            Some((_, guesses)) => guesses.clone(),
+            None => {
+                // Without the network there are no guesses, and all kinds to choose from.
+                let guesses = seen_styles(photo).unwrap_or_default();
+                *kept = Some((photo.clone(), guesses.clone()));
+                guesses
+            }
+        }
     }
 
     fn shown(&self) -> ShownArtifacts {

@@ -40,6 +40,23 @@ test("a photo that is dropped is asked for its width and becomes a garment", asy
     quiet(page);
 });
 
+test("a photo is taken by the camera", async () => {
+    const studio = await serve();
+    const page = await studio.open({ wait: false });
+    await page.getByRole("button", { name: "Take a photo" }).click();
+    await page.getByRole("button", { name: "Back" }).click();
+    await page.getByRole("button", { name: "Take a photo" }).click();
+    await page.getByRole("button", { name: "Take it" }).click();
+    await page.getByRole("heading", { name: "How wide is it?" }).waitFor();
+    const picture = page.getByAltText("Your photo photo.jpg");
+    await until("the picture", () => picture.evaluate((el) => el.naturalWidth > 100));
+    await page.getByLabel("Width").fill("52");
+    await page.getByRole("button", { name: "Make the garment" }).click();
+    await until("a pipeline", async () => (await stateOf(page)).project.file);
+    assert.equal(fs.readFileSync(path.join(studio.folder, "photo.jpg")).readUInt16BE(0), 0xffd8);
+    quiet(page);
+});
+
 test("a bank card beside the garment gives the width", async () => {
     const studio = await serve();
     const page = await studio.open({ wait: false });

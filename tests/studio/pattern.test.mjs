@@ -155,6 +155,26 @@ test("the pattern is printed as PDF, and the file is as it was", async () => {
     assert.equal((await stateOf(page)).text, text);
 });
 
+test("allowances are given where it is printed", async () => {
+    const pieces = async () => {
+        const link = pattern.getByRole("link", { name: /\.svg$/ });
+        const answer = await page.request.get(new URL(await link.getAttribute("href"), page.url()).href);
+        return Number(/width="([\d.]+)mm"/.exec(await answer.text())[1]);
+    };
+    const print = async (seam) => {
+        await pattern.getByLabel("Seam allowance").fill(seam);
+        await pattern.getByRole("button", { name: "SVG" }).click();
+    };
+    await print("10");
+    await said(page, /SVG: \d+ file\(s\) written/);
+    const narrow = await pieces();
+    await print("25");
+    await until("wider pieces", async () => (await pieces()) > narrow + 25);
+    await print("-1");
+    assert.equal(await pattern.getByLabel("Seam allowance").evaluate((el) => el.checkValidity()), false);
+    await pattern.getByLabel("Seam allowance").fill("10");
+});
+
 test("the pattern is written for a cutter", async () => {
     await pattern.getByRole("button", { name: "HPGL" }).click();
     await said(page, /HPGL: \d+ file\(s\) written/);

@@ -77,6 +77,18 @@ test("the kind is one of the card's choices, for the pattern and the wearer", as
     await change(page, () => page.keyboard.press("Control+z"));
 });
 
+test("what the network sees is offered as the kind", async () => {
+    const guesses = page.locator("#photo").getByRole("group", { name: "The network sees:" });
+    const first = guesses.getByRole("button").first();
+    assert.match(await first.textContent(), /^Vest \d+ %$/);
+    await settled(page);
+    const state = await change(page, () => page.locator("#photo").getByRole("button", { name: "T-shirt", exact: true }).click());
+    assert.match(state.text, /style: TShirt/);
+    const back = await change(page, () => first.click());
+    assert.match(back.text, /Block\(style: Vest/);
+    assert.match(back.text, /Fitting\(style: Vest/);
+});
+
 test("a stroke says what is ground: the stage that takes strokes comes in", async () => {
     await page.getByRole("button", { name: "Mark ground" }).click();
     const box = await page.locator("#photo svg > image").boundingBox();

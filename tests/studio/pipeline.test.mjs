@@ -20,6 +20,20 @@ test("the line below says what the change did and cost", async () => {
     await said(page, /fabric linen: .*(moved by at most [\d.]+ mm, in|Done in) [\d.]+ s/);
 });
 
+test("the arms and the looks of the cloth are set beside body and fabric", async () => {
+    const other = await serve("pattern.ron");
+    const shirt = await other.open();
+    const wearer = shirt.locator("#wearer");
+    await wearer.getByLabel("FabricTexturer texture").selectOption("Check");
+    await until("the texture", async () => /texture: Check/.test((await stateOf(shirt)).text));
+    const coloured = await change(shirt, () => wearer.getByLabel("FabricTexturer colour").fill("#803030"));
+    assert.match(coloured.text, /colour: "#803030"/);
+    const posed = await change(shirt, () => wearer.getByRole("slider", { name: "Mannequin arm_angle" }).press("ArrowLeft"));
+    assert.match(posed.text, /Mannequin\(arm_angle: 59\.\d/);
+    quiet(shirt);
+    await shirt.close();
+});
+
 test("a slider of the body is moved by keys", async () => {
     await page.getByRole("slider", { name: "Bust" }).focus();
     const state = await change(page, () => page.keyboard.press("ArrowRight"));

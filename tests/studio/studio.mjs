@@ -98,6 +98,9 @@ const launchChromium = () =>
             "--disable-background-networking",
             "--disable-component-update",
             "--disable-sync",
+            // A camera that shows a test picture.
+            "--use-fake-ui-for-media-stream",
+            "--use-fake-device-for-media-stream",
         ],
     });
 
@@ -107,7 +110,12 @@ const launchFirefox = () =>
         executablePath: process.env.FIREFOX,
         channel: "moz-firefox",
         headless: false,
-        firefoxUserPrefs: { "webgl.force-enabled": true },
+        firefoxUserPrefs: {
+            "webgl.force-enabled": true,
+            // A camera that shows a test picture.
+            "media.navigator.streams.fake": true,
+            "media.navigator.permission.disabled": true,
+        },
     });
 
 /** Has the page's files come from a folder, not from the program. */

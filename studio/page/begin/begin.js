@@ -6,6 +6,7 @@ import { t } from "../words/words.js";
 import { postJson, upload } from "../server/requests.js";
 import { store, tell, watch } from "../server/store.js";
 import { sayError, sayWord } from "../head/status.js";
+import { hasCamera, shoot } from "./camera.js";
 
 const PHOTO = /\.(jpe?g|png|webp|tiff?)$/i;
 const PATTERN = /\.(json|dxf|svg|val|sm2d)$/i;
@@ -160,6 +161,20 @@ function offer(root) {
         h("h2", { word: "begin.drop" }),
         h("p", { class: "hint", word: "begin.dropHow" }),
         chooser("begin-file", "begin.choose", { accept, multiple: true }, (files) => take(files, root)),
+        hasCamera() &&
+            h(
+                "p",
+                {},
+                h("button", {
+                    word: "begin.camera",
+                    onclick: () =>
+                        shoot(
+                            root,
+                            (photo) => take([photo], root),
+                            () => offer(root),
+                        ),
+                }),
+            ),
         store.beginsAnew &&
             h("p", {}, h("button", { word: "begin.stay", onclick: () => beginAnew(false) })),
     );

@@ -89,13 +89,33 @@ function another(name) {
     return [h("label", { class: "button", for: "photo-file", word: "photo.file" }), input];
 }
 
-function kinds(kindStages, chosen, choices) {
+/** What the garment is: the guesses of the network as buttons, and all kinds there are. */
+function kinds(kindStages, chosen, choices, guesses) {
     const take = (kind) =>
         edit(
             t("edit.kind", { kind: term("kind", kind) }),
             kindStages.map(({ path }) => ({ set: { path: `${path}.style`, value: kind } })),
         );
-    return h(
+    const seen = guesses.filter(({ kind }) => choices.includes(kind));
+    const likeliest =
+        seen.length > 0 &&
+        h(
+            "p",
+            { class: "choices", role: "group", label: "photo.guesses" },
+            h("span", { class: "hint", word: "photo.guesses" }),
+            seen.map(({ kind, share }) =>
+                h(
+                    "button",
+                    {
+                        "aria-pressed": kind === chosen,
+                        "data-key": `guess-${kind}`,
+                        onclick: () => take(kind),
+                    },
+                    t("photo.guess", { kind: term("kind", kind), share: Math.round(100 * share) }),
+                ),
+            ),
+        );
+    const all = h(
         "details",
         { class: "kinds" },
         h("summary", {}, t("photo.kind", { kind: term("kind", chosen) })),
@@ -115,17 +135,18 @@ function kinds(kindStages, chosen, choices) {
             ),
         ),
     );
+    return [likeliest, all];
 }
 
 export function mountFacts(root) {
-    const draw = whenChanged((name, entry, kindStages, chosen, choices) => {
+    const draw = whenChanged((name, entry, kindStages, chosen, choices, guesses) => {
         const open = root.querySelector("details")?.open;
         replace(
             root,
             entry?.file
                 ? scale(name, metres(entry.width), entry.scale)
                 : h("p", { class: "hint" }, t("photo.noFile", { name })),
-            kindStages.length > 0 && kinds(kindStages, chosen, choices),
+            kindStages.length > 0 && kinds(kindStages, chosen, choices, guesses),
         );
         const details = root.querySelector("details");
         if (details) details.open = open ?? false;
@@ -144,6 +165,7 @@ export function mountFacts(root) {
             kindStages,
             kindStages[0]?.style ?? param?.default ?? "Auto",
             param ? choicesOf(param) : [],
+            name === "front" ? (store.view?.guesses ?? []) : [],
         );
     });
 }

@@ -169,6 +169,20 @@ function fileField(param, value, { id, label }, take) {
     );
 }
 
+/** A colour as "#5f7fa8"; one that is not given is shown as a middle grey. */
+function colourField(param, value, { id, label }, take) {
+    const given = tryRead(value ?? param.default);
+    const field = h("input", {
+        id,
+        type: "color",
+        value: given?.kind === "text" ? given.value.toLowerCase() : "#808080",
+        "aria-label": label,
+        "data-key": id,
+    });
+    field.addEventListener("change", () => take(quote(field.value)));
+    return field;
+}
+
 function switchField(param, value, { id, label }, take) {
     const box = h("input", {
         id,
@@ -192,7 +206,7 @@ export function parameter(stage, card, param) {
             { set: { path, value: next } },
         ]);
     const names = namesIn(param, card);
-    const kind = names.length > 0 ? "names" : param.file ? "file" : kindOf(param);
+    const kind = names.length > 0 ? "names" : param.file ? "file" : param.name === "colour" ? "colour" : kindOf(param);
     const field = {
         switch: () => switchField(param, value, { id, label }, take),
         choice: () => choiceField(param, value, { id, label }, take),
@@ -200,6 +214,7 @@ export function parameter(stage, card, param) {
         length: () => lengthField(param, value, { id, label }, take),
         number: () => numberField(param, value, { id, label }, take),
         whole: () => numberField(param, value, { id, label }, take),
+        colour: () => colourField(param, value, { id, label }, take),
         file: () => fileField(param, value, { id, label }, take),
         text: () => textField(param, value, { id, label }, take),
     }[kind]();

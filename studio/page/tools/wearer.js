@@ -149,19 +149,45 @@ function noMeasures() {
     ];
 }
 
+/** The parameters of stages that are chosen here as well as on the stages' cards. */
+const rows = (list, wanted) =>
+    list
+        .filter(({ path }) => path)
+        .flatMap((stage) => {
+            const card = store.cards.get(stage.name);
+            const params = (card?.params ?? []).filter(wanted);
+            return params.length === 0
+                ? []
+                : [h("h3", {}, stage.name), ...params.map((param) => parameter(stage, card, param))];
+        });
+
+const shownOf = (list) => list.map(({ id, name, path, params }) => ({ id, name, path, params }));
+
+/** How the arms are held: as the garment is sewn, and as it hangs in the end. */
+const pose = (list) => rows(list, ({ name }) => name === "arm_angle");
+
+/** What the cloth looks like. */
+const looks = (list) => rows(list, ({ name }) => LOOKS.includes(name));
+const LOOKS = ["texture", "colour", "repeat", "unseen", "shading"];
+
 export function mountWearer(root) {
     const bodyPart = h("div");
+    const posePart = h("div", { class: "params" });
     const fabricPart = h("div");
+    const looksPart = h("div", { class: "params" });
     replace(
         root,
-        h("div", { class: "half" }, h("div", { class: "bar" }, h("h2", { word: "wearer.body" })), bodyPart),
+        h("div", { class: "half" }, h("div", { class: "bar" }, h("h2", { word: "wearer.body" })), bodyPart, posePart),
         h(
             "div",
             { class: "half" },
             h("div", { class: "bar" }, h("h2", { word: "wearer.fabric" })),
             fabricPart,
+            looksPart,
         ),
     );
+    const drawPose = whenChanged((list) => replace(posePart, pose(list)));
+    const drawLooks = whenChanged((list) => replace(looksPart, looks(list)));
     const drawBody = whenChanged((found, size) =>
         replace(
             bodyPart,
@@ -186,6 +212,8 @@ export function mountWearer(root) {
     watch(["measures", "state", "cards", "pending"], () => {
         if (!store.state || store.pending > 0) return;
         drawBody(store.measures, chosenSize(), store.cards.size > 0);
+        drawPose(shownOf(stagesOf("body")), store.cards.size > 0);
+        drawLooks(shownOf(stagesOf("texturer")), store.cards.size > 0);
         const stage = fabric();
         drawFabric(
             stage && { id: stage.id, name: stage.name, path: stage.path, params: stage.params },

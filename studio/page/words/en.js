@@ -64,6 +64,9 @@ export const en = {
     "proposals.count": "Proposed seams: {n}", "proposals.how": "This drawing has no seams. Nothing is sewn that you do not confirm: untick what is wrong. The figure says how sure the program is.",
     "proposals.first": "The drawing has no seams yet: look at those that are proposed, and sew them.", "proposals.sew": "Sew these {n}", "proposals.one": "Proposed:",
     "print": "Print", "print.how": "Cut and sew lines at true scale, with allowances, notches and grain.",
+    "print.seam": "Seam allowance", "print.hem": "Hem allowance",
+    "photo.guesses": "The network sees:", "photo.guess": "{kind} {share} %",
+    "begin.camera": "Take a photo", "begin.cameraHow": "Lay the garment flat, with ground on all four sides, and look at it from straight above.", "begin.shoot": "Take it", "begin.noCamera": "The camera cannot be used: {why}.",
     "print.busy": "Writing {format}…", "print.done": "{format}: {n} file(s) written.",
 
     "garment.tools": "Tools of the garment", "garment.none": "The garment comes when it is sewn.", "garment.role": "3D view",

@@ -62,6 +62,9 @@ export const zh = {
     "proposals.count": "建议的缝：{n}", "proposals.how": "此图没有缝线信息。未经确认不会缝合：请取消不正确的项。数字表示程序的把握。",
     "proposals.first": "此图尚无缝线：请查看建议的缝并缝合。", "proposals.sew": "缝合这 {n} 条", "proposals.one": "建议：",
     "print": "打印", "print.how": "按实际尺寸，含裁剪线、缝线、缝份、刀口与布纹。",
+    "print.seam": "缝份", "print.hem": "下摆折边",
+    "photo.guesses": "网络识别为：", "photo.guess": "{kind} {share} %",
+    "begin.camera": "拍照", "begin.cameraHow": "将服装平铺，四周留出背景，从正上方拍摄。", "begin.shoot": "拍摄", "begin.noCamera": "无法使用相机：{why}。",
     "print.busy": "正在写入 {format}…", "print.done": "{format}：已写入 {n} 个文件。",
 
     "garment.tools": "服装工具", "garment.none": "缝合后显示服装。", "garment.role": "三维视图",

@@ -68,6 +68,11 @@ impl CheckedText {
         }
     }
 
+    /// Whether photos are cut by the kind of garment that they show.
+    pub(crate) fn cuts_photos(&self) -> bool {
+        self.stages.iter().any(|s| s.path.as_deref() == Some("style") && s.name == "Block")
+    }
+
     /// The names of the landmarks that the style is given.
     pub(crate) fn landmarks(&self) -> BTreeSet<String> {
         let given = self.stages.iter().filter(|s| s.path.as_deref() == Some("style"));

@@ -8,11 +8,21 @@ use std::collections::BTreeSet;
 use toile_core::artifact::{Figures, Outline, Photo, Point2};
 
 /// The photo whose landmarks are named without it.
-const FRONT: &str = "front";
+pub(crate) const FRONT: &str = "front";
 
-/// The view with its number; `given` are the names of landmarks that the text gives, `proposes`
-/// says whether seams may be proposed.
-pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>, proposes: bool) -> Value {
+/// What a view has that runs have not made.
+#[derive(Debug)]
+pub(crate) struct ViewText {
+    /// The names of landmarks that the text gives.
+    pub(crate) given: BTreeSet<String>,
+    /// Whether seams may be proposed.
+    pub(crate) proposes: bool,
+    /// The kinds that the garment of the front is taken for, with their probabilities.
+    pub(crate) guesses: Vec<(&'static str, f64)>,
+}
+
+/// The view with its number.
+pub(crate) fn view(number: u64, shown: &ShownArtifacts, text: &ViewText) -> Value {
     let pieces = match &shown.pattern {
         Some(pattern) => Some((pieces_of_pattern(pattern, &shown.photos), seams_of_pattern(pattern, shown))),
         None if shown.outlines.values().any(|o| !o.edges.is_empty()) => {
@@ -21,12 +31,13 @@ pub(crate) fn view(number: u64, shown: &ShownArtifacts, given: &BTreeSet<String>
         None => None,
     };
     let figures = shown.figures.as_deref();
-    let read = shown.read.as_deref().filter(|_| proposes);
+    let read = shown.read.as_deref().filter(|_| text.proposes);
     let girth = |(level, g): (&String, &toile_core::artifact::GirthFigures)| json!({ "level": level, "cloth_m": g.cloth_m, "body_m": g.body_m });
     let missed = figures.iter().flat_map(|f| &f.shortfalls);
     json!({
         "view": number,
-        "photos": shown.photos.iter().map(|(name, photo)| photo_json(name, photo, shown, given)).collect::<Vec<_>>(),
+        "photos": shown.photos.iter().map(|(name, photo)| photo_json(name, photo, shown, &text.given)).collect::<Vec<_>>(),
+        "guesses": text.guesses.iter().map(|(kind, share)| json!({ "kind": kind, "share": share })).collect::<Vec<_>>(),
         "outlines": shown.outlines.iter().filter_map(|(name, o)| outline(name, o)).collect::<Vec<_>>(),
         "pattern": pieces.map(|(pieces, seams)| json!({ "pieces": pieces, "seams": seams })),
         "proposals": read.map_or(json!([]), |read| proposals(read, shown.pattern.as_deref())),

@@ -19,7 +19,7 @@ mod tests;
 mod unpick;
 
 pub use alter::{Alter, Alteration};
-pub use block::{Block, BlockStyle, Complete, Fitting, PhotoLandmark, Sides, Waist, landmarks};
+pub use block::{Block, BlockStyle, Complete, Fitting, PhotoLandmark, Sides, Waist, landmarks, seen_styles};
 pub(crate) use block::{TRUNK_BOTTOM, TRUNK_TOP};
 pub use neckline::Neckline;
 pub use outline::{Outline, OutlineStyle};

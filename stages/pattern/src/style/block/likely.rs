@@ -15,6 +15,8 @@ const WEIGHT: f64 = 0.4;
 const LEAST: f64 = 0.002;
 /// So many of the likeliest kinds are tried before the others.
 const FIRST: usize = 3;
+/// What is less probable is no guess.
+const SHOWN: f64 = 0.05;
 /// From this probability of a style on, the network says what the garment is.
 const SURE: f64 = 0.6;
 /// A style that is less probable cuts another garment than the network sees, where that one is
@@ -56,6 +58,21 @@ impl Likely {
         self.0.iter().filter(|(kind, _)| cuts(kind)).map(|(_, p)| p).sum()
     }
 
+    /// The usual styles of the kinds, likeliest first.
+    fn usual_styles(&self) -> Vec<(&'static str, f64)> {
+        let mut all: Vec<(&'static str, f64)> = Vec::new();
+        for (kind, p) in &self.0 {
+            let name = styles(*kind)[0].name();
+            match all.iter_mut().find(|(other, _)| *other == name) {
+                Some((_, sum)) => *sum += p,
+                None => all.push((name, *p)),
+            }
+        }
+        all.retain(|(_, p)| *p >= SHOWN);
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all
+    }
+
     /// Whether it cuts garments of one of the likeliest kinds.
     pub(super) fn is_likely(&self, name: &str) -> bool {
         let first = self.0.iter().take(FIRST).filter(|(_, p)| *p >= LEAST);
@@ -81,7 +98,16 @@ impl Likely {
     }
 }
 
-/// The styles that cut garments of a kind.
+/// The styles that a network sees in a photo, likeliest first, each with its probability from 0.05
+/// to 1. A kind of garment counts for the style that is the usual way to cut it.
+///
+/// Errors: the network cannot be run.
+pub fn seen_styles(photo: &Photo) -> Result<Vec<(&'static str, f64)>, StageError> {
+    let seen = SeenPhoto::of(photo, true)?.seen;
+    Ok(seen.map_or_else(Vec::new, |seen| Likely::of(&seen).usual_styles()))
+}
+
+/// The styles that cut garments of a kind, the usual one first.
 fn styles(kind: GarmentKind) -> &'static [BlockStyle] {
     use BlockStyle as S;
     match kind {
@@ -133,6 +159,19 @@ mod tests {
             assert!(GarmentKind::ALL.iter().any(|k| styles(*k).iter().any(|s| s.name() == name)), "{name}");
         }
         assert!(GarmentKind::ALL.iter().all(|k| !styles(*k).is_empty()));
+    }
+
+    #[test]
+    fn kinds_count_for_the_usual_way_to_cut_them() {
+        let seen = likely(&[
+            (GarmentKind::Tshirt, 0.5),
+            (GarmentKind::Dress, 0.3),
+            (GarmentKind::Polo, 0.16),
+            (GarmentKind::Skirt, 0.04),
+        ]);
+        let styles = seen.usual_styles();
+        assert_eq!(styles.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["TShirt", "Dress"]);
+        assert!((styles[0].1 - 0.66).abs() < 1e-12);
     }
 
     #[test]

@@ -36,6 +36,7 @@ use front::Front;
 pub(super) use lay::Fitted;
 use lay::{mirrored, pattern};
 use leftover::Leftover;
+pub use likely::seen_styles;
 use likely::{Likely, SeenPhoto};
 use pieces::Making;
 use rayon::prelude::*;
